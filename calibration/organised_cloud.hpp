@@ -36,7 +36,9 @@ struct OrganisedCloud {
   const CloudPoint* line(std::size_t index) const { return points.data() + index * beams; }
 
   // A line that never came. A line that came has an intensity, be it 0, at every beam.
-  bool line_missing(std::size_t index) const { return beams == 0 || std::isnan(line(index)->intensity); }
+  bool line_missing(std::size_t index) const {
+    return beams == 0 || std::isnan(line(index)->intensity);
+  }
 };
 
 }  // namespace swivel

@@ -24,9 +24,9 @@ struct RigGeometry {
 // The triangular plate of Yuan 2021: an isosceles right triangle in a plane normal to the
 // axis, its base edge nearest to the axis, its middle line pointing at azimuth alpha in O.
 struct PlateGeometry {
-  double base_distance_m = 0.05475;  // from the axis to the base edge
-  double hypotenuse_m = 0.112;       // the base edge's length
-  double depth_m = 0.060935;         // of the plate below the lidar's centre, along the axis
+  double base_distance_m = 0.05475;       // from the axis to the base edge
+  double hypotenuse_m = 0.112;            // the base edge's length
+  double depth_m = 0.060935;              // of the plate below the lidar's centre, along the axis
   double alpha_rad = rad_from_deg(30.0);  // as drawn; a calibration replaces it
 
   // The ring in which the plate's points are looked for (Yuan 2021, section 4.1).
