@@ -1,0 +1,54 @@
+// A rig file (config/rigs/*.yaml), read and checked: everything that differs from rig to rig.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "calibration/rig.hpp"
+
+namespace swivel {
+
+struct LidarSettings {
+  std::string address;
+  bool intensities = true;
+  bool stamp_at_rear_centre = false;
+};
+
+struct StepperSettings {
+  std::string address;
+  double home_angle_deg = 0.0;
+  double cable_limit_deg = 0.0;
+  double return_speed_deg_s = 0.0;
+  double settle_s = 0.0;
+  double minimum_step_rate_hz = 0.0;
+};
+
+struct ModeSettings {
+  double sweep_angle_deg = 180.0;
+  std::map<int, int> lines;  // mode -> scan lines of a sweep
+};
+
+enum class Timing {
+  kPerBeam,  // each beam at its own instant, the dead time counted
+  kEq7       // the paper's even spread of all points over the sweep (Yuan 2021, eq. 7)
+};
+
+struct RigFile {
+  std::string path;
+  std::string rig;
+  std::optional<LidarSettings> lidar;      // absent: recordings only
+  std::optional<StepperSettings> stepper;  // absent: the axis is turned by something else
+  bool axis_measured = false;
+  RigGeometry geometry;
+  std::optional<PlateGeometry> plate;
+  Timing timing = Timing::kPerBeam;
+  std::string estimator;
+  ModeSettings modes;
+};
+
+// Throws ConfigurationError with file and line.
+RigFile load_rig_file(const std::string& path);
+
+}  // namespace swivel
