@@ -1,0 +1,98 @@
+#include "calibration/line_assembly.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "calibration/units.hpp"
+
+namespace swivel {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLongestRange_m = 65.535;
+constexpr double kAllowedShift_m = 1e-7;
+
+Eigen::Matrix3d rotation_z(double angle_rad) {
+  return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+}  // namespace
+
+LineAssembler::LineAssembler(const ForwardModel& model)
+    : model_(model),
+      tolerance_rad_(kAllowedShift_m / (kLongestRange_m * static_cast<double>(model.beam_count()))),
+      angle_per_beam_rad_(kNaN),
+      directions_(3, model.beam_count()),
+      lever_arms_m_(3, model.beam_count()),
+      ranges_m_(model.beam_count()),
+      intensities_(model.beam_count()) {}
+
+void LineAssembler::assemble(const LineReadings& readings, double axis_angle_rad,
+                             double angle_per_beam_rad, CloudPoint* row) {
+  if (!(std::abs(angle_per_beam_rad - angle_per_beam_rad_) <= tolerance_rad_)) {
+    turn_beams(angle_per_beam_rad);
+  }
+  read_line(readings);
+  project(model_.rig().T_base_axis.linear() * rotation_z(axis_angle_rad), row);
+}
+
+void LineAssembler::assemble(const LineReadings& readings,
+                             const std::vector<double>& axis_angles_rad, CloudPoint* row) {
+  assert(axis_angles_rad.size() == model_.beam_count());
+  read_line(readings);
+  for (std::size_t beam = 0; beam < model_.beam_count(); ++beam) {
+    const Eigen::Vector3f point =
+        model_.point(beam, ranges_m_[beam], axis_angles_rad[beam]).cast<float>();
+    row[beam] = {point.x(), point.y(), point.z(), intensities_[beam]};
+  }
+}
+
+void LineAssembler::turn_beams(double angle_per_beam_rad) {
+  const Eigen::Isometry3d& T_axis_lidar = model_.rig().T_axis_lidar;
+  for (Eigen::Index beam = 0; beam < directions_.cols(); ++beam) {
+    const Eigen::Matrix3d turn = rotation_z(static_cast<double>(beam) * angle_per_beam_rad);
+    const double beam_angle_rad = model_.beam_angle_rad(static_cast<std::size_t>(beam));
+    directions_.col(beam) = turn * T_axis_lidar.linear() * beam_direction_in_lidar(beam_angle_rad);
+    lever_arms_m_.col(beam) = turn * T_axis_lidar.translation();
+  }
+  angle_per_beam_rad_ = angle_per_beam_rad;
+}
+
+// A beam for which the readings say nothing is invalid like any other.
+void LineAssembler::read_line(const LineReadings& readings) {
+  assert(readings.ranges_mm.size() == model_.beam_count());
+  const std::size_t said = std::min(readings.ranges_mm.size(), ranges_m_.size());
+  const std::uint16_t* const ranges_mm = readings.ranges_mm.data();
+  for (std::size_t beam = 0; beam < said; ++beam) {
+    const int range_mm = ranges_mm[beam];
+    const bool valid = range_mm >= readings.range_min_mm && range_mm <= readings.range_max_mm;
+    ranges_m_[beam] = valid ? m_from_mm(range_mm) : kNaN;
+  }
+  std::fill(ranges_m_.begin() + static_cast<std::ptrdiff_t>(said), ranges_m_.end(), kNaN);
+  const std::size_t bright = std::min(readings.intensities.size(), intensities_.size());
+  std::copy_n(readings.intensities.begin(), bright, intensities_.begin());
+  std::fill(intensities_.begin() + static_cast<std::ptrdiff_t>(bright), intensities_.end(), 0.0F);
+}
+
+void LineAssembler::project(const Eigen::Matrix3d& R_base_turned, CloudPoint* row) const {
+  const Eigen::Matrix3d turn = R_base_turned;
+  const Eigen::Vector3d origin_m = model_.rig().T_base_axis.translation();
+  const double* const range_m = ranges_m_.data();
+  const Eigen::Index beams = directions_.cols();
+  for (Eigen::Index beam = 0; beam < beams; ++beam) {
+    const double x = range_m[beam] * directions_(0, beam) + lever_arms_m_(0, beam);
+    const double y = range_m[beam] * directions_(1, beam) + lever_arms_m_(1, beam);
+    const double z = range_m[beam] * directions_(2, beam) + lever_arms_m_(2, beam);
+    row[beam].x_m =
+        static_cast<float>(turn(0, 0) * x + turn(0, 1) * y + turn(0, 2) * z + origin_m.x());
+    row[beam].y_m =
+        static_cast<float>(turn(1, 0) * x + turn(1, 1) * y + turn(1, 2) * z + origin_m.y());
+    row[beam].z_m =
+        static_cast<float>(turn(2, 0) * x + turn(2, 1) * y + turn(2, 2) * z + origin_m.z());
+    row[beam].intensity = intensities_[static_cast<std::size_t>(beam)];
+  }
+}
+
+}  // namespace swivel
