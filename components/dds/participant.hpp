@@ -1,0 +1,194 @@
+// The one wrapper round Fast DDS: a participant with typed writers and readers.
+//
+//   Participant participant({.name = "cloud_assembler", ...});
+//   Writer<msg::Sweep> sweeps(participant, kSweepTopic);
+//   participant.subscribe(kScanLineTopic, [&](const msg::ScanLine& line) { ... });
+//   participant.start();
+//
+// Callbacks and ticks run one after the other on one thread of the participant, never in
+// Fast DDS's own, so that what they share needs no lock and they may create or write what they
+// like. QoS comes from config/dds_profiles.xml, a profile a topic.
+#pragma once
+
+#include <fastdds/dds/core/condition/GuardCondition.hpp>
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "components/dds/topics.hpp"
+
+namespace swivel {
+
+struct ParticipantOptions {
+  std::string name;           // "cloud_assembler"; what others see in their logs
+  std::string rig;            // the first part of the topics' names
+  int domain = 0;             // 0 .. 232
+  std::string network;        // a participant profile: "loopback" or "lan"
+  std::string profiles_path;  // dds_profiles.xml
+};
+
+// No participant, writer or reader could be made; what() says what to do.
+struct DdsError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class PeerListener;
+
+class Participant {
+ public:
+  // Throws DdsError.
+  explicit Participant(const ParticipantOptions& options);
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+  ~Participant();
+
+  // Before start() only.
+  template <class Message>
+  void subscribe(const Topic<Message>& topic, std::function<void(const Message&)> callback);
+  void on_tick(std::chrono::milliseconds period, std::function<void()> callback);
+  // Told, in words, of unmatched QoS, lost samples and vanished peers. They are logged anyhow.
+  void on_problem(std::function<void(const std::string&)> callback);
+
+  void start();
+  void stop();  // no callback runs after it returns; not from a callback
+
+  const std::string& rig() const { return options_.rig; }
+  const std::string& name() const { return options_.name; }
+  // Samples that a writer sent and we did not get, over all topics.
+  std::uint64_t samples_lost() const { return samples_lost_; }
+
+ private:
+  template <class Message>
+  friend class Writer;
+  struct Endpoint;
+
+  eprosima::fastdds::dds::Topic* make_topic(const std::string& name,
+                                            const eprosima::fastdds::dds::TypeSupport& type);
+  eprosima::fastdds::dds::DataWriter* make_writer(const std::string& topic, const char* profile,
+                                                  const eprosima::fastdds::dds::TypeSupport& type);
+  eprosima::fastdds::dds::DataReader* make_reader(const std::string& topic, const char* profile,
+                                                  const eprosima::fastdds::dds::TypeSupport& type);
+  void watch(eprosima::fastdds::dds::DataReader* reader, const std::string& topic, bool numbered,
+             std::function<void()> take);
+  void count_gap(const std::string& topic, std::uint64_t& last, std::uint64_t number);
+  void warn(const std::string& problem);
+  void run();
+  void handle(Endpoint& endpoint);
+  void handle_reader_status(Endpoint& endpoint);
+  void handle_writer_status(Endpoint& endpoint);
+  void report_peers();
+  std::chrono::milliseconds run_ticks();
+
+  ParticipantOptions options_;
+  std::unique_ptr<PeerListener> peers_;
+  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
+  std::vector<std::unique_ptr<Endpoint>> endpoints_;
+  struct Tick {
+    std::chrono::milliseconds period;
+    std::chrono::steady_clock::time_point due;
+    std::function<void()> callback;
+  };
+  std::vector<Tick> ticks_;
+  std::function<void(const std::string&)> on_problem_;
+  std::atomic<std::uint64_t> samples_lost_{0};
+  eprosima::fastdds::dds::WaitSet wait_set_;
+  eprosima::fastdds::dds::GuardCondition woken_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+// Writes from any thread. Must not outlive its participant.
+template <class Message>
+class Writer {
+ public:
+  Writer(Participant& participant, const swivel::Topic<Message>& topic)
+      : rig_(participant.rig()),
+        topic_(topic.full_name(rig_)),
+        writer_(participant.make_writer(topic_, topic.name, make_type())) {}
+
+  // Fills rig and sequence number. False if it could not be sent within the topic's
+  // max_blocking_time, and counted as such.
+  bool write(Message& message) {
+    const std::lock_guard lock(mutex_);
+    stamp_message(message, rig_, next_number_);
+    if (!writer_->write(&message)) {
+      ++failures_;
+      return false;
+    }
+    ++next_number_;
+    return true;
+  }
+  bool write(Message&& message) { return write(message); }
+
+  // Until every reader has what was written; false when the time is over.
+  bool wait_until_acknowledged(std::chrono::milliseconds timeout) {
+    const auto milliseconds = timeout.count();
+    return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(
+               static_cast<std::int32_t>(milliseconds / 1000),
+               static_cast<std::uint32_t>(milliseconds % 1000) * 1000000U)) ==
+           ReturnCode_t::RETCODE_OK;
+  }
+
+  std::size_t reader_count() const {
+    eprosima::fastdds::dds::PublicationMatchedStatus status;
+    writer_->get_publication_matched_status(status);
+    return static_cast<std::size_t>(status.current_count);
+  }
+
+  std::uint64_t written() const { return next_number_ - 1; }
+  std::uint64_t failures() const { return failures_; }
+
+ private:
+  static eprosima::fastdds::dds::TypeSupport make_type() {
+    return eprosima::fastdds::dds::TypeSupport(new typename TypeSupportOf<Message>::Type());
+  }
+
+  std::string rig_;
+  std::string topic_;
+  eprosima::fastdds::dds::DataWriter* writer_;
+  std::mutex mutex_;
+  std::atomic<std::uint64_t> next_number_{1};
+  std::atomic<std::uint64_t> failures_{0};
+};
+
+template <class Message>
+void Participant::subscribe(const swivel::Topic<Message>& topic,
+                            std::function<void(const Message&)> callback) {
+  using eprosima::fastdds::dds::SampleInfo;
+  const std::string name = topic.full_name(options_.rig);
+  const eprosima::fastdds::dds::TypeSupport type(new typename TypeSupportOf<Message>::Type());
+  auto* const reader = make_reader(name, topic.name, type);
+  // The message is kept from sample to sample: a cloud's 11 MB are allocated once.
+  auto message = std::make_shared<Message>();
+  auto last_numbers =
+      std::make_shared<std::map<eprosima::fastdds::dds::InstanceHandle_t, std::uint64_t>>();
+  watch(reader, name, is_numbered(*message),
+        [this, reader, name, message, last_numbers, callback = std::move(callback)] {
+          SampleInfo info;
+          while (!stopping_ &&
+                 reader->take_next_sample(message.get(), &info) == ReturnCode_t::RETCODE_OK) {
+            if (!info.valid_data) continue;
+            count_gap(name, (*last_numbers)[info.publication_handle], number_of(*message));
+            callback(*message);
+          }
+        });
+}
+
+}  // namespace swivel
