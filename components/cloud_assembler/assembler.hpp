@@ -1,0 +1,84 @@
+// From scan lines, axis angles and windows to organised clouds, as the lines arrive.
+//
+// A sweep is begun by a Sweep message with a window (PHASE_CRUISING). The lines that lie wholly
+// inside the window become its rows, each beam at its own instant and at the axis angle of that
+// instant. Lines, angles and windows travel on topics of their own and may overtake each
+// other, so recent lines are kept until their window and their angles are known.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "calibration/axis_track.hpp"
+#include "components/cloud_assembler/sweep_in_progress.hpp"
+#include "components/common/rig_file.hpp"
+#include "swivel/idl/swivel.h"
+
+namespace swivel {
+
+struct AssembledSweep {
+  msg::Sweep sweep;      // PHASE_ASSEMBLED; tells whether the sweep is complete
+  OrganisedCloud cloud;  // frame O' if the axis is commanded, base if it is measured;
+                         // empty if there is nothing to be trusted
+};
+
+// lines_received = used + outside + rejected + late + those kept for now.
+struct AssemblerCounters {
+  std::uint64_t lines_received = 0;
+  std::uint64_t lines_used = 0;
+  std::uint64_t lines_outside = 0;   // of every window: the lidar streams at all times
+  std::uint64_t lines_rejected = 0;  // malformed, or of another shape than the sweep's
+  std::uint64_t lines_late = 0;      // inside the window of a sweep that was closed without them
+  std::uint64_t lines_missing = 0;
+  std::uint64_t axis_samples_rejected = 0;
+  std::uint64_t sweeps_complete = 0;
+  std::uint64_t sweeps_incomplete = 0;
+};
+
+class Assembler {
+ public:
+  Assembler(const AssemblyOptions& options, std::function<void(AssembledSweep&&)> on_sweep);
+
+  void add(const msg::ScanLine& line);
+  void add(const msg::Axis& axis);
+  void add(const msg::Sweep& sweep);
+
+  // To be called now and then with a steady clock: closes a sweep whose lines do not come.
+  void check(std::chrono::steady_clock::time_point now);
+
+  // Closes what is open: no more will come.
+  void finish();
+
+  // From the next sweep on.
+  void set_geometry(const RigGeometry& geometry) { options_.geometry = geometry; }
+
+  const AssemblerCounters& counters() const { return counters_; }
+
+ private:
+  void begin_or_extend(const msg::Sweep& sweep);
+  void abandon(const msg::Sweep& fault);
+  void place_lines();
+  void place(const msg::ScanLine& line);
+  bool angles_known(const msg::ScanLine& line) const;
+  void close(const std::string& reason);
+  bool belongs_to_last_closed(const msg::ScanLine& line) const;
+  void forget_old_lines();
+
+  AssemblyOptions options_;
+  std::function<void(AssembledSweep&&)> on_sweep_;
+  AxisTrack axis_;
+  std::deque<msg::ScanLine> waiting_;  // in order of time
+  std::unique_ptr<SweepInProgress> sweep_;
+  msg::Sweep last_closed_;
+  bool ending_ = false;  // the sequencer has left the window
+  bool news_ = false;    // since the last check
+  std::chrono::steady_clock::time_point last_news_{};
+  std::chrono::steady_clock::time_point ending_since_{};
+  AssemblerCounters counters_;
+};
+
+}  // namespace swivel

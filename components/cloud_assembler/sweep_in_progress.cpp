@@ -1,0 +1,115 @@
+#include "components/cloud_assembler/sweep_in_progress.hpp"
+
+#include <cmath>
+
+namespace swivel {
+
+std::int64_t last_beam_time_ns(const msg::ScanLine& line) {
+  const double beams = static_cast<double>(line.ranges_mm().size());
+  return line.beam0_time_ns() + std::llround((beams - 1.0) * line.beam_period_ns());
+}
+
+SweepInProgress::SweepInProgress(const AssemblyOptions& options, const msg::Sweep& sweep)
+    : options_(options),
+      announced_(sweep),
+      lines_expected_(sweep.lines_expected()),
+      last_end_ns_(sweep.window_end_ns()) {
+  add_window(sweep);
+}
+
+void SweepInProgress::add_window(const msg::Sweep& sweep) {
+  windows_.push_back({sweep.window_start_ns(), sweep.window_end_ns(), sweep.window_first_line(),
+                      sweep.window_lines()});
+  last_end_ns_ = sweep.window_end_ns();
+}
+
+bool SweepInProgress::spans(const msg::ScanLine& line) const {
+  return line.beam0_time_ns() >= announced_.window_start_ns() &&
+         last_beam_time_ns(line) <= last_end_ns_;
+}
+
+bool SweepInProgress::fits(const msg::ScanLine& line) const {
+  return line.ranges_mm().size() == cloud_.beams &&
+         line.first_beam_angle_deg() == first_line_.first_beam_angle_deg() &&
+         line.beam_step_deg() == first_line_.beam_step_deg();
+}
+
+SweepInProgress::Fate SweepInProgress::place(const msg::ScanLine& line, const AxisTrack& axis) {
+  while (!windows_.empty() && last_beam_time_ns(line) > windows_.front().end_ns) {
+    windows_.erase(windows_.begin());
+    previous_in_window_ = false;
+  }
+  if (windows_.empty()) return Fate::kBeyondWindow;
+  if (line.beam0_time_ns() < windows_.front().start_ns) return Fate::kBeforeWindow;
+  if (!assembler_) begin(line, axis);
+  if (!fits(line)) return Fate::kOtherShape;
+
+  const std::size_t row = row_of(line);
+  const std::size_t end_row = windows_.front().first_row + windows_.front().rows;
+  if (row < end_row) write_row(row, line, axis);
+  next_row_ = row + 1;
+  previous_time_ns_ = line.beam0_time_ns();
+  previous_in_window_ = true;
+  if (next_row_ >= end_row) {
+    windows_.erase(windows_.begin());
+    previous_in_window_ = false;
+  }
+  return row < end_row ? Fate::kPlaced : Fate::kBeyondWindow;
+}
+
+// Counted from the line before, so that an error of the period does not add up.
+std::size_t SweepInProgress::row_of(const msg::ScanLine& line) const {
+  if (!previous_in_window_) return windows_.front().first_row;
+  const double periods =
+      static_cast<double>(line.beam0_time_ns() - previous_time_ns_) / line.scan_period_ns();
+  const auto lines = std::max(1LL, std::llround(periods));
+  return next_row_ - 1 + static_cast<std::size_t>(lines);
+}
+
+void SweepInProgress::begin(const msg::ScanLine& line, const AxisTrack& axis) {
+  assembler_.emplace(ForwardModel(options_.geometry, rad_from_deg(line.first_beam_angle_deg()),
+                                  rad_from_deg(line.beam_step_deg()), line.ranges_mm().size()));
+  cloud_ = OrganisedCloud(lines_expected_, line.ranges_mm().size());
+  first_line_ = line;
+  if (options_.axis_measured) return;
+  const bool first_row = windows_.front().first_row == 0;
+  const std::int64_t origin_ns = first_row ? line.beam0_time_ns() : announced_.window_start_ns();
+  first_angle_rad_ = axis.angle_at(origin_ns).value_or(0.0);
+}
+
+void SweepInProgress::write_row(std::size_t row, const msg::ScanLine& line, const AxisTrack& axis) {
+  const LineReadings readings{line.ranges_mm(), line.intensities(), line.range_min_mm(),
+                              line.range_max_mm()};
+  if (options_.timing == Timing::kEq7) {
+    const double per_line_rad = options_.sweep_angle_rad / static_cast<double>(lines_expected_);
+    assembler_->assemble(readings, static_cast<double>(row) * per_line_rad,
+                         per_line_rad / static_cast<double>(cloud_.beams), cloud_.line(row));
+  } else if (const auto segment =
+                 axis.segment_over(line.beam0_time_ns(), last_beam_time_ns(line))) {
+    assembler_->assemble(readings, segment->start_angle_rad - first_angle_rad_,
+                         segment->rate_rad_s * s_from_ns(line.beam_period_ns()), cloud_.line(row));
+  } else {
+    std::vector<double> angles_rad(cloud_.beams);
+    for (std::size_t beam = 0; beam < cloud_.beams; ++beam) {
+      const double delay_ns = static_cast<double>(beam) * line.beam_period_ns();
+      angles_rad[beam] =
+          axis.angle_at(line.beam0_time_ns() + std::llround(delay_ns)).value() - first_angle_rad_;
+    }
+    assembler_->assemble(readings, angles_rad, cloud_.line(row));
+  }
+  ++lines_used_;
+}
+
+msg::Sweep SweepInProgress::summary(const std::string& reason) const {
+  msg::Sweep summary = announced_;
+  summary.phase(msg::PHASE_ASSEMBLED);
+  summary.first_beam_time_ns(first_line_.beam0_time_ns());
+  summary.first_device_stamp_ms(first_line_.device_stamp_ms());
+  summary.lines_used(static_cast<std::uint32_t>(lines_used_));
+  summary.lines_missing(static_cast<std::uint32_t>(lines_expected_ - lines_used_));
+  summary.complete(lines_used_ == lines_expected_);
+  summary.reason(reason);
+  return summary;
+}
+
+}  // namespace swivel

@@ -1,0 +1,77 @@
+#include "components/common/health_reporter.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "hardware/io/clock.hpp"
+
+namespace swivel {
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+}  // namespace
+
+HealthReporter::HealthReporter(Participant& participant)
+    : participant_(participant), writer_(participant, kHealthTopic) {
+  health_.participant(participant.name());
+  health_.process_id(static_cast<std::uint32_t>(getpid()));
+  health_.host(host_name());
+  health_.started_time_ns(now_ns());
+  health_.state(msg::HEALTH_WAITING);
+  health_.doing("starting");
+  participant.on_problem([this](const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    health_.last_error(problem);
+    health_.last_error_time_ns(now_ns());
+  });
+  participant.on_tick(std::chrono::seconds(1), [this] {
+    const std::lock_guard lock(mutex_);
+    publish();
+  });
+}
+
+HealthReporter::~HealthReporter() {
+  set_state(msg::HEALTH_STOPPED, "stopped");
+}
+
+void HealthReporter::set_state(msg::HealthState state, const std::string& doing) {
+  const std::lock_guard lock(mutex_);
+  if (health_.state() == state && health_.doing() == doing) return;
+  health_.state(state);
+  health_.doing(doing);
+  publish();
+}
+
+void HealthReporter::error(const std::string& what) {
+  spdlog::error("{}", what);
+  const std::lock_guard lock(mutex_);
+  health_.last_error(what);
+  health_.last_error_time_ns(now_ns());
+  publish();
+}
+
+void HealthReporter::set_counter(const std::string& name, std::uint64_t value) {
+  const std::lock_guard lock(mutex_);
+  counters_[name] = value;
+}
+
+void HealthReporter::publish() {
+  counters_["samples_lost"] = participant_.samples_lost();
+  health_.time_ns(now_ns());
+  health_.counters().clear();
+  for (const auto& [name, value] : counters_) {
+    msg::Counter counter;
+    counter.name(name);
+    counter.value(value);
+    health_.counters().push_back(counter);
+  }
+  writer_.write(health_);
+}
+
+}  // namespace swivel

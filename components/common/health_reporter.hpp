@@ -1,0 +1,35 @@
+// Publishes what a participant does, its counters and its last error, once a second and when
+// something changes. Thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "components/dds/participant.hpp"
+
+namespace swivel {
+
+class HealthReporter {
+ public:
+  // Subscribes itself to the participant's problems and ticks: before participant.start().
+  explicit HealthReporter(Participant& participant);
+  ~HealthReporter();  // says HEALTH_STOPPED
+
+  void set_state(msg::HealthState state, const std::string& doing);
+  // Logs it, too.
+  void error(const std::string& what);
+  void set_counter(const std::string& name, std::uint64_t value);
+
+ private:
+  void publish();
+
+  Participant& participant_;
+  Writer<msg::Health> writer_;
+  std::mutex mutex_;
+  msg::Health health_;
+  std::map<std::string, std::uint64_t> counters_;
+};
+
+}  // namespace swivel

@@ -1,0 +1,88 @@
+#include "components/common/program.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <time.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "components/common/strict_yaml.hpp"
+
+namespace swivel {
+
+StopSignal::StopSignal() {
+  sigemptyset(&signals_);
+  sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+}
+
+bool StopSignal::wait_for(std::chrono::milliseconds timeout) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
+  const auto rest = std::chrono::nanoseconds(timeout - seconds);
+  const timespec time_left{seconds.count(), rest.count()};
+  if (!received_) received_ = sigtimedwait(&signals_, nullptr, &time_left) > 0;
+  return received_;
+}
+
+ParticipantOptions CommonOptions::participant(const std::string& name,
+                                              const std::string& rig) const {
+  return {name, rig, domain, network, profiles_file};
+}
+
+std::string program_directory() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+std::string shared_file(const std::string& name) {
+  return (std::filesystem::path(program_directory()) / "../share/swivel" / name).lexically_normal();
+}
+
+void add_common_options(CLI::App& app, CommonOptions& options) {
+  options.rig_file = shared_file("rigs/yuan.yaml");
+  options.profiles_file = shared_file("dds_profiles.xml");
+  app.add_option("--rig", options.rig_file, "The rig file")->capture_default_str();
+  app.add_option("--domain", options.domain, "The DDS domain")
+      ->envname("SWIVEL_DOMAIN")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  app.add_option("--network", options.network,
+                 "loopback: this computer alone; lan: every interface; or a participant profile")
+      ->envname("SWIVEL_NETWORK")
+      ->capture_default_str();
+  app.add_option("--profiles", options.profiles_file, "The DDS profiles")->capture_default_str();
+  app.add_option("--log-level", options.log_level, "What to log")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
+      ->capture_default_str();
+}
+
+void start_log(const std::string& program, const std::string& level) {
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  spdlog::set_pattern("%H:%M:%S.%e %-7l %n: %v");
+  spdlog::set_level(spdlog::level::from_str(level));
+}
+
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  try {
+    app.parse(argc, argv);
+    return body();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  } catch (const ExitError& error) {
+    std::cerr << app.get_name() << ": " << error.what() << '\n';
+    return error.code;
+  } catch (const ConfigurationError& error) {
+    std::cerr << app.get_name() << ": " << error.what() << '\n';
+    return kExitConfiguration;
+  } catch (const DdsError& error) {
+    std::cerr << app.get_name() << ": " << error.what() << '\n';
+    return kExitUnavailable;
+  } catch (const std::exception& error) {
+    std::cerr << app.get_name() << ": unexpected: " << error.what() << '\n';
+    return kExitInternal;
+  }
+}
+
+}  // namespace swivel

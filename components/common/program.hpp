@@ -1,0 +1,75 @@
+// What every program of Swivel has in common: its options, its log, how it stops and how it
+// ends.
+#pragma once
+
+#include <signal.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "components/dds/participant.hpp"
+
+namespace swivel {
+
+// As sysexits.h has them, so that a service manager can tell what is worth a restart.
+enum ExitCode {
+  kExitOk = 0,
+  kExitUsage = 64,
+  kExitBadData = 65,
+  kExitNoInput = 66,
+  kExitUnavailable = 69,  // a device, or the participants
+  kExitInternal = 70,
+  kExitCannotWrite = 73,
+  kExitInputOutput = 74,
+  kExitTryAgain = 75,
+  kExitConfiguration = 78,
+};
+
+// Ends a program with a code and one line that says what to do.
+struct ExitError : std::runtime_error {
+  ExitError(ExitCode exit_code, const std::string& what)
+      : std::runtime_error(what), code(exit_code) {}
+  ExitCode code;
+};
+
+// SIGINT and SIGTERM, blocked from its construction on, so that they reach wait_for alone. Must
+// be made before any thread.
+class StopSignal {
+ public:
+  StopSignal();
+  // True once the program was told to stop.
+  bool wait_for(std::chrono::milliseconds timeout);
+  bool received() { return wait_for(std::chrono::milliseconds(0)); }
+
+ private:
+  sigset_t signals_;
+  bool received_ = false;
+};
+
+// The same words in every program.
+struct CommonOptions {
+  std::string rig_file;
+  std::string profiles_file;
+  std::string network = "loopback";
+  std::string log_level = "info";
+  int domain = 0;
+
+  ParticipantOptions participant(const std::string& name, const std::string& rig) const;
+};
+
+// share/swivel beside the directory of the running program.
+std::string shared_file(const std::string& name);
+std::string program_directory();
+
+void add_common_options(CLI::App& app, CommonOptions& options);
+void start_log(const std::string& program, const std::string& level);
+
+// Parses the options, runs body, turns what it throws into one line and an exit code.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+}  // namespace swivel
