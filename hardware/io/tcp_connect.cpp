@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -18,6 +19,8 @@
 
 namespace swivel {
 namespace {
+
+constexpr std::chrono::milliseconds kLookupStep{5};
 
 struct HostAndPort {
   std::string host;
@@ -72,13 +75,19 @@ Lookup look_up(const HostAndPort& target, int flags) {
 
 // A name server that does not answer holds getaddrinfo for many seconds and cannot be
 // interrupted, so a thread of its own waits for it and is left behind at the deadline.
-std::optional<Lookup> look_up_until(const HostAndPort& target, Deadline deadline) {
+std::optional<Lookup> look_up_until(const HostAndPort& target, Deadline deadline,
+                                    const WakeUp* wake_up) {
   Lookup numeric = look_up(target, AI_NUMERICHOST);
   if (numeric.error == 0) return numeric;
   std::packaged_task<Lookup()> task([target] { return look_up(target, 0); });
   std::future<Lookup> answer = task.get_future();
   std::thread(std::move(task)).detach();
-  if (answer.wait_until(deadline) != std::future_status::ready) return std::nullopt;
+  while (answer.wait_for(kLookupStep) != std::future_status::ready) {
+    const Wait outcome =
+        wait_ready(-1, 0, std::min(deadline, deadline_after(kLookupStep)), wake_up);
+    if (outcome == Wait::kInterrupted || std::chrono::steady_clock::now() >= deadline)
+      return std::nullopt;
+  }
   return answer.get();
 }
 
@@ -134,7 +143,7 @@ Result<int> tcp_connect(const std::string& host_and_port, Deadline deadline,
                         const WakeUp* wake_up) {
   const Result<HostAndPort> target = split(host_and_port);
   if (!target) return Failure{target.reason()};
-  const std::optional<Lookup> lookup = look_up_until(*target, deadline);
+  const std::optional<Lookup> lookup = look_up_until(*target, deadline, wake_up);
   if (!lookup)
     return Failure{"no name server answered for '" + target->host + "': give the number instead"};
   if (lookup->error != 0)
