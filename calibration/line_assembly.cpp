@@ -18,6 +18,18 @@ Eigen::Matrix3d rotation_z(double angle_rad) {
   return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
+// Invalid is NaN, which the arithmetic then carries to x, y and z: a loop without a branch.
+void read_ranges(const LineReadings& readings, std::size_t count, double* ranges_m) {
+  const std::uint16_t* const ranges_mm = readings.ranges_mm.data();
+  const double min_mm = readings.range_min_mm;
+  const double max_mm = readings.range_max_mm;
+  for (std::size_t beam = 0; beam < count; ++beam) {
+    const double range_mm = ranges_mm[beam];
+    const double not_too_near_mm = range_mm < min_mm ? kNaN : range_mm;
+    ranges_m[beam] = m_from_mm(range_mm > max_mm ? kNaN : not_too_near_mm);
+  }
+}
+
 }  // namespace
 
 LineAssembler::LineAssembler(const ForwardModel& model)
@@ -64,12 +76,7 @@ void LineAssembler::turn_beams(double angle_per_beam_rad) {
 void LineAssembler::read_line(const LineReadings& readings) {
   assert(readings.ranges_mm.size() == model_.beam_count());
   const std::size_t said = std::min(readings.ranges_mm.size(), ranges_m_.size());
-  const std::uint16_t* const ranges_mm = readings.ranges_mm.data();
-  for (std::size_t beam = 0; beam < said; ++beam) {
-    const int range_mm = ranges_mm[beam];
-    const bool valid = range_mm >= readings.range_min_mm && range_mm <= readings.range_max_mm;
-    ranges_m_[beam] = valid ? m_from_mm(range_mm) : kNaN;
-  }
+  read_ranges(readings, said, ranges_m_.data());
   std::fill(ranges_m_.begin() + static_cast<std::ptrdiff_t>(said), ranges_m_.end(), kNaN);
   const std::size_t bright = std::min(readings.intensities.size(), intensities_.size());
   std::copy_n(readings.intensities.begin(), bright, intensities_.begin());

@@ -1,0 +1,192 @@
+#include "calibration/planes.hpp"
+
+#include <pcl/ModelCoefficients.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+#include <pcl/segmentation/sac_segmentation.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace swivel {
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
+
+constexpr int kRansacRounds = 400;
+constexpr int kRefinements = 4;
+constexpr double kKeptSigmas = 3.0;     // of the points that a plane is fitted to
+constexpr double kSharedStrip_m = 0.1;  // about another plane, where points could be either's
+constexpr std::size_t kLeastPoints = 50;
+
+// Distance from a plane, positive on the rig's side.
+double height_over(const Plane& plane, const Eigen::Vector3f& point) {
+  return plane.normal.dot(point.cast<double>()) + plane.distance_m;
+}
+
+Points valid_points(const OrganisedCloud& cloud) {
+  Points points;
+  points.reserve(cloud.points.size());
+  for (const CloudPoint& point : cloud.points) {
+    if (point.valid()) points.emplace_back(point.x_m, point.y_m, point.z_m);
+  }
+  return points;
+}
+
+// Every so many of them, over the whole cloud.
+PclCloud::Ptr sample(const Points& points, std::size_t count) {
+  const std::size_t stride =
+      std::max<std::size_t>(1, points.size() / std::max<std::size_t>(1, count));
+  auto sampled = pcl::make_shared<PclCloud>();
+  for (std::size_t index = 0; index < points.size(); index += stride) {
+    sampled->emplace_back(points[index].x(), points[index].y(), points[index].z());
+  }
+  return sampled;
+}
+
+Plane facing_origin(const Eigen::Vector3d& normal, double offset_m) {
+  Plane plane;
+  const double sign = offset_m < 0.0 ? -1.0 : 1.0;
+  plane.normal = sign * normal.normalized();
+  plane.distance_m = sign * offset_m / normal.norm();
+  return plane;
+}
+
+std::optional<Plane> segment(const PclCloud::Ptr& cloud, const PlaneOptions& options, bool walls) {
+  pcl::SACSegmentation<pcl::PointXYZ> segmentation;  // its own fixed seed: the same every time
+  segmentation.setModelType(walls ? pcl::SACMODEL_PARALLEL_PLANE : pcl::SACMODEL_PLANE);
+  segmentation.setMethodType(pcl::SAC_RANSAC);
+  segmentation.setDistanceThreshold(options.band_m);
+  segmentation.setMaxIterations(kRansacRounds);
+  segmentation.setOptimizeCoefficients(false);
+  if (walls) {
+    segmentation.setAxis(Eigen::Vector3f::UnitZ());
+    segmentation.setEpsAngle(options.wall_tilt_rad);
+  }
+  segmentation.setInputCloud(cloud);
+  pcl::PointIndices inliers;
+  pcl::ModelCoefficients found;
+  segmentation.segment(inliers, found);
+  if (found.values.size() < 4 || inliers.indices.size() < kLeastPoints) return std::nullopt;
+  const Eigen::Vector3f normal(found.values[0], found.values[1], found.values[2]);
+  Plane plane = facing_origin(normal.cast<double>(), double{found.values[3]});
+  plane.rms_m = options.band_m / kKeptSigmas;
+  plane.points = inliers.indices.size();
+  return plane;
+}
+
+void remove_near(const Plane& plane, double band_m, PclCloud& cloud) {
+  const auto near = [&](const pcl::PointXYZ& point) {
+    return std::abs(height_over(plane, point.getVector3fMap())) <= band_m;
+  };
+  cloud.erase(std::remove_if(cloud.begin(), cloud.end(), near), cloud.end());
+  cloud.width = static_cast<std::uint32_t>(cloud.size());
+  cloud.height = 1;
+}
+
+// Sums from which mean and scatter of points come, about a place near to them.
+struct Moments {
+  std::size_t count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+  void add(const Eigen::Vector3d& point) {
+    ++count;
+    sum += point;
+    squares += point * point.transpose();
+  }
+  Eigen::Vector3d mean() const { return sum / static_cast<double>(count); }
+  Eigen::Matrix3d scatter() const {
+    return squares / static_cast<double>(count) - mean() * mean().transpose();
+  }
+};
+
+bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen::Vector3f& point) {
+  for (std::size_t other = 0; other < planes.size(); ++other) {
+    if (other != own && std::abs(height_over(planes[other], point)) < kSharedStrip_m) return true;
+  }
+  return false;
+}
+
+Moments moments_near(const Points& points, const std::vector<Plane>& planes, std::size_t own,
+                     double band_m) {
+  Moments moments;
+  for (const Eigen::Vector3f& point : points) {
+    if (std::abs(height_over(planes[own], point)) > band_m) continue;
+    if (!near_another(planes, own, point)) moments.add(point.cast<double>());
+  }
+  return moments;
+}
+
+// Total least squares, eq. (8): the normal is the direction of least scatter.
+std::optional<Plane> fit(const Moments& moments) {
+  if (moments.count < kLeastPoints) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.scatter());
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  Plane plane = facing_origin(normal, -normal.dot(moments.mean()));
+  plane.rms_m = std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
+  plane.points = moments.count;
+  const Eigen::Vector3d level = Eigen::Vector3d::UnitZ().cross(plane.normal);
+  const double spread_m2 = level.dot(moments.scatter() * level) / level.squaredNorm();
+  plane.azimuth_sigma_rad =
+      plane.rms_m / std::sqrt(static_cast<double>(plane.points) * std::max(spread_m2, 1e-12));
+  return plane;
+}
+
+// Fits a plane to the points near it, and again to those near the better plane.
+std::optional<Plane> refine(const Points& points, std::vector<Plane> planes, std::size_t own,
+                            const PlaneOptions& options) {
+  double band_m = options.band_m;
+  for (int round = 0; round < kRefinements; ++round) {
+    const auto better = fit(moments_near(points, planes, own, band_m));
+    if (!better) return std::nullopt;
+    planes[own] = *better;
+    band_m = std::clamp(kKeptSigmas * better->rms_m, 0.2 * options.band_m, 2.0 * options.band_m);
+  }
+  return planes[own];
+}
+
+bool is_wall(const Plane& plane, const PlaneOptions& options) {
+  return std::abs(plane.normal.z()) <= std::sin(options.wall_tilt_rad);
+}
+
+std::vector<Plane> find(const OrganisedCloud& cloud, std::size_t count, const PlaneOptions& options,
+                        bool walls) {
+  const Points points = valid_points(cloud);
+  const PclCloud::Ptr rest = sample(points, options.sampled);
+  const auto least =
+      std::max(kLeastPoints,
+               static_cast<std::size_t>(options.least_share * static_cast<double>(rest->size())));
+  std::vector<Plane> rough;
+  while (rough.size() < count && rest->size() >= least) {
+    const auto plane = segment(rest, options, walls);
+    if (!plane || plane->points < least) break;
+    rough.push_back(*plane);
+    remove_near(*plane, 2.0 * options.band_m, *rest);
+  }
+  std::vector<Plane> planes;
+  for (std::size_t own = 0; own < rough.size(); ++own) {
+    const auto plane = refine(points, rough, own, options);
+    if (plane && (!walls || is_wall(*plane, options))) planes.push_back(*plane);
+  }
+  std::sort(planes.begin(), planes.end(),
+            [](const Plane& one, const Plane& other) { return one.points > other.points; });
+  return planes;
+}
+
+}  // namespace
+
+std::vector<Plane> find_planes(const OrganisedCloud& cloud, std::size_t count,
+                               const PlaneOptions& options) {
+  return find(cloud, count, options, false);
+}
+
+std::vector<Plane> find_walls(const OrganisedCloud& cloud, std::size_t count,
+                              const PlaneOptions& options) {
+  return find(cloud, count, options, true);
+}
+
+}  // namespace swivel

@@ -1,0 +1,333 @@
+#include "calibration/plate_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "calibration/in_words.hpp"
+
+namespace swivel {
+namespace {
+
+// Beams nearer to the outline than this say neither inside nor outside: the spot is 4 mm, the
+// lines of the fastest mode lie 6 mm apart.
+constexpr double kInsideMargin_m = 0.004;
+constexpr double kOutsideMargin_m = 0.008;
+
+constexpr double kSearch_rad = rad_from_deg(30.0);
+constexpr double kSearchStep_rad = rad_from_deg(0.5);
+constexpr double kFitShare = 0.3;  // of beams in the ring, between plate and no plate
+constexpr double kFitDepth_m = 0.010;
+constexpr std::size_t kFitBeams = 10'000;                    // more than these only take time
+constexpr double kSectorHalfWidth_rad = rad_from_deg(44.0);  // the corners lie at 45.6 deg
+
+// Of the beams on the plate, how many must have measured in the ring. At a range noise of
+// 13 mm it is 0.65, at 30 mm 0.25; a surface 40 mm below the plate gives 0.05.
+constexpr double kAnyPlate = 0.08;
+constexpr double kEnoughPlate = 0.15;
+constexpr std::size_t kLeastBeams = 100;
+constexpr double kForeignShare = 0.25;  // of a cell outside of the plate
+constexpr double kHiddenShare = 0.4;    // of a cell on the plate, against the others
+constexpr double kTellingCount = 8.0;   // expected in a cell, for none to mean something
+
+// A count of beams and of those that measured in the ring.
+struct Tally {
+  std::size_t beams = 0;
+  std::size_t hits = 0;
+
+  void add(bool hit) {
+    ++beams;
+    if (hit) ++hits;
+  }
+  double share() const {
+    return beams == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(beams);
+  }
+};
+
+// Cells of 10 deg and 18 mm about the axis, counted from the plate's middle line.
+class CellGrid {
+ public:
+  CellGrid(const PlateGeometry& plate, double beta_rad) : plate_(plate), beta_rad_(beta_rad) {}
+
+  Tally& cell_of(const PlateBeam& beam) {
+    const double azimuth_rad = std::remainder(std::atan2(beam.y_m, beam.x_m) - beta_rad_, 2 * kPi);
+    const double radius_m = std::hypot(beam.x_m, beam.y_m);
+    const double part =
+        (radius_m - plate_.ring_inner_m) / (plate_.ring_outer_m - plate_.ring_inner_m);
+    const auto ring = static_cast<std::size_t>(std::clamp(part * kRings, 0.0, kRings - 1.0));
+    const double turn = (azimuth_rad + kPi) / (2 * kPi);
+    const auto sector = static_cast<std::size_t>(std::clamp(turn * kSectors, 0.0, kSectors - 1.0));
+    return cells_[ring * kSectors + sector];
+  }
+
+  static double azimuth_deg(std::size_t cell) {
+    return (static_cast<double>(cell % kSectors) + 0.5) * 360.0 / kSectors - 180.0;
+  }
+
+  static constexpr std::size_t kSectors = 36;
+  static constexpr std::size_t kRings = 3;
+  using Cells = std::array<Tally, kSectors * kRings>;
+  const Cells& cells() const { return cells_; }
+
+ private:
+  PlateGeometry plate_;
+  double beta_rad_;
+  Cells cells_{};
+};
+
+// The lidar's centre, seen from above, when it measured a point on the side of the plate: it
+// stands across from the beam by the lever arm's x, and along it by its y.
+std::optional<Eigen::Vector3d> lidar_centre(const CloudPoint& point,
+                                            const Eigen::Vector3d& lever_arm_m) {
+  const double radius_m = std::hypot(double{point.x_m}, double{point.y_m});
+  if (radius_m <= std::abs(lever_arm_m.x())) return std::nullopt;
+  const double along_m = -std::sqrt(radius_m * radius_m - lever_arm_m.x() * lever_arm_m.x());
+  const double turned_rad =
+      std::atan2(double{point.y_m}, double{point.x_m}) - std::atan2(along_m, lever_arm_m.x());
+  return Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * lever_arm_m;
+}
+
+// A quick way out for most beams: those too level to come down inside the ring, wherever the
+// lidar's centre was on its circle.
+bool passes_over(const CloudPoint& point, const PlateGeometry& plate,
+                 const Eigen::Vector3d& lever_arm_m) {
+  const double reach_m = lever_arm_m.head<2>().norm();
+  const double level_m =
+      std::sqrt(double{point.x_m} * double{point.x_m} + double{point.y_m} * double{point.y_m}) -
+      reach_m;
+  const double down_m = lever_arm_m.z() - double{point.z_m};
+  return level_m * plate.depth_m > (plate.ring_outer_m + reach_m) * down_m;
+}
+
+std::optional<PlateBeam> beam_at_plate(const CloudPoint& point, const PlateGeometry& plate,
+                                       const Eigen::Vector3d& lever_arm_m) {
+  if (!point.valid() || point.x_m <= 0.0F || point.z_m >= 0.0F) return std::nullopt;
+  if (passes_over(point, plate, lever_arm_m)) return std::nullopt;
+  const auto centre = lidar_centre(point, lever_arm_m);
+  if (!centre) return std::nullopt;
+  const Eigen::Vector3d along = Eigen::Vector3d(point.x_m, point.y_m, point.z_m) - *centre;
+  if (along.z() >= -0.2 * along.norm()) return std::nullopt;
+  const Eigen::Vector3d met = *centre + along * (-plate.depth_m / along.z());
+  const double radius_m = std::hypot(met.x(), met.y());
+  if (met.x() <= 0.0 || radius_m < plate.ring_inner_m || radius_m > plate.ring_outer_m) {
+    return std::nullopt;
+  }
+  return PlateBeam{met.x(), met.y(), 0, in_ring(point, plate, lever_arm_m.z() - plate.depth_m)};
+}
+
+Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, double beta_rad) {
+  Tally tally;
+  for (const PlateBeam& beam : beams) {
+    if (inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m) > kInsideMargin_m) {
+      tally.add(beam.in_ring);
+    }
+  }
+  return tally;
+}
+
+// How well the outline fits there: hits should lie inside and misses outside, and the more so
+// the further from it, up to kFitDepth_m.
+double outline_score(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
+                     double beta_rad, std::size_t stride) {
+  double score = 0.0;
+  for (std::size_t index = 0; index < beams.size(); index += stride) {
+    const PlateBeam& beam = beams[index];
+    const double inside_m = inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m);
+    const double weight = beam.in_ring ? 1.0 - kFitShare : -kFitShare;
+    score += weight * std::clamp(inside_m, -kFitDepth_m, kFitDepth_m);
+  }
+  return score;
+}
+
+double fit_outline(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
+                   double beta_rad) {
+  const std::size_t stride = 1 + beams.size() / kFitBeams;
+  double best_rad = beta_rad;
+  double best_score = outline_score(plate, beams, beta_rad, stride);
+  const auto steps = static_cast<int>(kSearch_rad / kSearchStep_rad);
+  for (int step = -steps; step <= steps; ++step) {
+    const double shifted_rad = beta_rad + step * kSearchStep_rad;
+    const double score = outline_score(plate, beams, shifted_rad, stride);
+    if (score > best_score) {
+      best_score = score;
+      best_rad = shifted_rad;
+    }
+  }
+  return best_rad;
+}
+
+// Where the beams of a line meet the plate's plane on the mean: azimuth = first + step * line.
+struct LineAzimuths {
+  double first_rad = 0.0;
+  double step_rad = 0.0;
+  std::vector<std::size_t> beams;  // a line
+};
+
+LineAzimuths fit_line_azimuths(const std::vector<PlateBeam>& beams, std::size_t lines) {
+  LineAzimuths fit;
+  fit.beams.assign(lines, 0);
+  double mean_line = 0.0;
+  double mean_rad = 0.0;
+  const auto count = static_cast<double>(beams.size());
+  for (const PlateBeam& beam : beams) {
+    ++fit.beams[beam.line];
+    mean_line += static_cast<double>(beam.line) / count;
+    mean_rad += std::atan2(beam.y_m, beam.x_m) / count;
+  }
+  double squares = 0.0;
+  double products = 0.0;
+  for (const PlateBeam& beam : beams) {
+    const double from_mean = static_cast<double>(beam.line) - mean_line;
+    squares += from_mean * from_mean;
+    products += from_mean * (std::atan2(beam.y_m, beam.x_m) - mean_rad);
+  }
+  fit.step_rad = squares > 0.0 ? products / squares : 0.0;
+  fit.first_rad = mean_rad - fit.step_rad * mean_line;
+  return fit;
+}
+
+std::size_t usual_beams(const LineAzimuths& azimuths) {
+  std::vector<std::size_t> seen;
+  std::copy_if(azimuths.beams.begin(), azimuths.beams.end(), std::back_inserter(seen),
+               [](std::size_t beams) { return beams > 0; });
+  if (seen.empty()) return 0;
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+  std::nth_element(seen.begin(), middle, seen.end());
+  return *middle;
+}
+
+// Lines that should have crossed the plate and said little or nothing there.
+std::string missing_lines(const LineAzimuths& azimuths, double beta_rad) {
+  if (!(std::abs(azimuths.step_rad) > 0.0)) return "all lines of the sweep lie on one another";
+  const double one = (beta_rad - kSectorHalfWidth_rad - azimuths.first_rad) / azimuths.step_rad;
+  const double other = (beta_rad + kSectorHalfWidth_rad - azimuths.first_rad) / azimuths.step_rad;
+  const double first = std::ceil(std::min(one, other));
+  const double last = std::floor(std::max(one, other));
+  if (first < 0.0 || last > static_cast<double>(azimuths.beams.size()) - 1.0) {
+    return "the sweep begins or ends on the plate: it must see the plate whole";
+  }
+  const std::size_t usual = usual_beams(azimuths);
+  std::size_t missing = 0;
+  for (auto line = static_cast<std::size_t>(first); line <= static_cast<std::size_t>(last);
+       ++line) {
+    if (2 * azimuths.beams[line] < usual) ++missing;
+  }
+  if (missing == 0) return {};
+  return in_words(missing, " of the ", last - first + 1.0,
+                  " lines that cross the plate are missing or empty there");
+}
+
+// Cells on the plate in which far less was seen than in the others.
+std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
+                        double beta_rad) {
+  CellGrid grid(plate, beta_rad);
+  for (const PlateBeam& beam : beams) {
+    if (inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m) > kInsideMargin_m) {
+      grid.cell_of(beam).add(beam.in_ring);
+    }
+  }
+  std::vector<double> shares;
+  for (const Tally& cell : grid.cells()) {
+    if (cell.beams >= 10) shares.push_back(cell.share());
+  }
+  std::sort(shares.begin(), shares.end());
+  const double usual = shares.empty() ? 0.0 : shares[shares.size() * 2 / 3];
+  for (std::size_t index = 0; index < grid.cells().size(); ++index) {
+    const Tally& cell = grid.cells()[index];
+    const double expected = usual * static_cast<double>(cell.beams);
+    const double least = std::max(kHiddenShare * expected - 2.0 * std::sqrt(expected), 0.5);
+    if (expected < kTellingCount || static_cast<double>(cell.hits) >= least) continue;
+    return in_words("a part of the plate is hidden: at ", CellGrid::azimuth_deg(index),
+                    " deg from its middle ", cell.hits, " of ", cell.beams, " beams met it, where ",
+                    std::round(expected), " would; clear what stands over the plate");
+  }
+  return {};
+}
+
+// Cells outside of the plate in which something was seen.
+std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
+                           double beta_rad) {
+  CellGrid grid(plate, beta_rad);
+  for (const PlateBeam& beam : beams) {
+    if (inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m) < -kOutsideMargin_m) {
+      grid.cell_of(beam).add(beam.in_ring);
+    }
+  }
+  for (std::size_t index = 0; index < grid.cells().size(); ++index) {
+    const Tally& cell = grid.cells()[index];
+    const double limit = 3.0 + kForeignShare * static_cast<double>(cell.beams);
+    if (static_cast<double>(cell.hits) <= limit) continue;
+    return in_words("something else is in the ring: ", cell.hits, " of ", cell.beams,
+                    " beams met it at ", CellGrid::azimuth_deg(index),
+                    " deg from the plate's middle; clear cables and the like away");
+  }
+  return {};
+}
+
+}  // namespace
+
+bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m) {
+  if (!(std::abs(double{point.z_m} - height_m) <= plate.ring_thickness_m / 2)) return false;
+  const double radius_m = std::hypot(double{point.x_m}, double{point.y_m});
+  return point.x_m > 0.0F && radius_m >= plate.ring_inner_m && radius_m <= plate.ring_outer_m;
+}
+
+double plate_height_m(const PlateGeometry& plate, const RigGeometry& rig) {
+  return rig.T_axis_lidar.translation().z() - plate.depth_m;
+}
+
+std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
+                                      const RigGeometry& rig) {
+  std::vector<PlateBeam> beams;
+  for (std::size_t line = 0; line < cloud.lines; ++line) {
+    for (std::size_t beam = 0; beam < cloud.beams; ++beam) {
+      auto met = beam_at_plate(cloud.line(line)[beam], plate, rig.T_axis_lidar.translation());
+      if (!met) continue;
+      met->line = line;
+      beams.push_back(*met);
+    }
+  }
+  return beams;
+}
+
+double inside_outline_m(const PlateGeometry& plate, double beta_rad, double x_m, double y_m) {
+  const double along_m = std::cos(beta_rad) * x_m + std::sin(beta_rad) * y_m;
+  const double across_m = -std::sin(beta_rad) * x_m + std::cos(beta_rad) * y_m;
+  const double beyond_base_m = along_m - plate.base_distance_m;
+  const double short_of_legs_m =
+      (plate.hypotenuse_m / 2 - beyond_base_m - std::abs(across_m)) * std::sqrt(0.5);
+  return std::min(beyond_base_m, short_of_legs_m);
+}
+
+PlateView judge_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
+                      const std::vector<PlateBeam>& beams, double beta_rad) {
+  PlateView view;
+  view.outline_beta_rad = fit_outline(plate, beams, beta_rad);
+  const Tally tally = on_plate(plate, beams, view.outline_beta_rad);
+  view.occupancy = tally.share();
+  const auto say = [&view](AttitudeVerdict verdict, const std::string& reason) {
+    view.verdict = verdict;
+    view.reason = reason;
+    return view;
+  };
+  const std::string seen =
+      in_words(tally.hits, " of the ", tally.beams, " beams that would meet the plate did");
+  if (tally.beams >= kLeastBeams && view.occupancy < kAnyPlate) {
+    return say(AttitudeVerdict::kNoPlate, "no plate: " + seen);
+  }
+  const LineAzimuths azimuths = fit_line_azimuths(beams, cloud.lines);
+  view.line_step_rad = azimuths.step_rad;
+  const std::string missing = missing_lines(azimuths, view.outline_beta_rad);
+  if (!missing.empty()) return say(AttitudeVerdict::kLinesMissing, missing);
+  if (tally.beams < kLeastBeams || view.occupancy < kEnoughPlate) {
+    return say(AttitudeVerdict::kTooFewPoints, "too few points on the plate: " + seen);
+  }
+  const std::string foreign = foreign_object(plate, beams, view.outline_beta_rad);
+  if (!foreign.empty()) return say(AttitudeVerdict::kForeignObject, foreign);
+  const std::string hidden = hidden_part(plate, beams, view.outline_beta_rad);
+  if (!hidden.empty()) return say(AttitudeVerdict::kForeignObject, hidden);
+  return say(AttitudeVerdict::kGood, "");
+}
+
+}  // namespace swivel
