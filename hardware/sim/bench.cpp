@@ -1,0 +1,89 @@
+#include "hardware/sim/bench.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+#include "hardware/io/clock.hpp"
+
+namespace swivel::sim {
+namespace {
+
+constexpr std::int64_t kLongestWait_ns = 100'000'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+bool notified(const WakeUp& stop) {
+  pollfd wait{stop.descriptor(), POLLIN, 0};
+  return ::poll(&wait, 1, 0) > 0;
+}
+
+}  // namespace
+
+Bench::Bench(const BenchOptions& options)
+    : start_ns_(now_ns()),
+      world_(options.world),
+      lidar_(options.lidar, world_, options.seed),
+      timing_(options.timing, start_ns_, options.lidar.steps_per_turn, options.lidar.last_step,
+              options.seed),
+      stepper_(options.motor, options.seed, start_ns_),
+      sensor_(options.lidar, timing_, std::llround(options.timing.start_latency_ms * 1e6)),
+      truth_(options.truth_path),
+      server_(options.server, sensor_, timing_,
+              [this](std::uint64_t scan) { return cast_scan(scan); }),
+      stepper_port_(stepper_, options.stepper_link) {
+  note_truth(options);
+}
+
+void Bench::note_truth(const BenchOptions& options) {
+  truth_.note("seed", options.seed);
+  truth_.note("alpha_deg", options.world.plate.alpha_deg);
+  truth_.note("scan_period_ns", timing_.scan_period_ns());
+  truth_.note("lever_arm_mm", options.lidar.lever_arm_mm);
+  truth_.note("bias_deg", options.lidar.bias_deg);
+  truth_.note("noise_mm", options.lidar.noise_mm);
+  const RoomOptions& room = options.world.room;
+  truth_.note("room_front_mm", room.front_mm);
+  truth_.note("room_back_mm", room.back_mm);
+  truth_.note("room_left_mm", room.left_mm);
+  truth_.note("room_right_mm", room.right_mm);
+  truth_.note("room_floor_mm", room.floor_mm);
+  truth_.note("room_roof_mm", room.roof_mm);
+  truth_.note("room_yaw_deg", room.yaw_deg);
+  truth_.note("room_front_skew_deg", room.front_skew_deg);
+  truth_.begin_rows();
+}
+
+LineReading Bench::cast_scan(std::uint64_t scan) {
+  const std::int64_t beam0_ns = timing_.beam0_time_ns(scan);
+  truth_.row(timing_.stamp_ms(scan), beam0_ns, stepper_.shaft_angle_deg(beam0_ns));
+  ++lines_sent_;
+  return lidar_.cast_line({scan, beam0_ns, timing_.beam_period_ns()}, [this](std::int64_t time_ns) {
+    return stepper_.shaft_angle_deg(time_ns) * kRadPerDeg;
+  });
+}
+
+void Bench::run(const WakeUp& stop) {
+  while (!notified(stop)) {
+    // The stepper first: what it is told at an instant counts for the beams from then on.
+    const std::int64_t time_ns = now_ns();
+    stepper_port_.serve(time_ns);
+    server_.serve(time_ns);
+    wait(stop);
+  }
+}
+
+void Bench::wait(const WakeUp& stop) const {
+  const std::int64_t time_ns = now_ns();
+  std::vector<pollfd> waits = {{stop.descriptor(), POLLIN, 0}};
+  server_.add_to(waits, time_ns);
+  stepper_port_.add_to(waits);
+  const std::int64_t until_ns =
+      std::min(server_.next_event_ns(), stepper_port_.next_event_ns(time_ns));
+  const std::int64_t wait_ns =
+      until_ns <= time_ns ? 0 : std::min(kLongestWait_ns, until_ns - time_ns);
+  const timespec timeout{static_cast<time_t>(wait_ns / kSecond_ns),
+                         static_cast<long>(wait_ns % kSecond_ns)};
+  ::ppoll(waits.data(), waits.size(), &timeout, nullptr);
+}
+
+}  // namespace swivel::sim

@@ -1,0 +1,181 @@
+#include "hardware/sim/scip_server.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+namespace swivel::sim {
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t kSlowClient = 1U << 20U;  // bytes that a client may leave unread
+
+bool every(int count, std::uint64_t frame) {
+  return count > 0 && frame % static_cast<std::uint64_t>(count) == 0;
+}
+
+std::int64_t ns_from_s(double duration_s) {
+  return std::llround(duration_s * 1e9);
+}
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
+
+sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+// The sockets API wants its addresses seen as another type.
+sockaddr* generic(sockaddr_in& address) {
+  return reinterpret_cast<sockaddr*>(&address);
+}
+
+}  // namespace
+
+ScipServer::ScipServer(const ScipServerOptions& options, ScipSensor& sensor,
+                       const LidarTiming& timing, CastScan cast_scan)
+    : options_(options),
+      sensor_(&sensor),
+      timing_(&timing),
+      cast_scan_(std::move(cast_scan)),
+      port_(options.port) {
+  listen();
+}
+
+void ScipServer::listen() {
+  FileDescriptor listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int yes = 1;
+  sockaddr_in address = loopback(port_);
+  socklen_t length = sizeof address;
+  if (!listener.open() ||
+      ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
+      ::bind(listener.get(), generic(address), length) != 0 || ::listen(listener.get(), 4) != 0 ||
+      ::getsockname(listener.get(), generic(address), &length) != 0) {
+    fail("cannot listen on 127.0.0.1:" + std::to_string(port_) +
+         " for the lidar's clients; choose another --port");
+  }
+  port_ = ntohs(address.sin_port);
+  listener_ = std::move(listener);
+}
+
+void ScipServer::add_to(std::vector<pollfd>& waits, std::int64_t now_ns) const {
+  if (client_.open()) {
+    const bool sends = !outgoing_.empty() && now_ns >= stalled_until_ns_;
+    waits.push_back({client_.get(), static_cast<short>(sends ? POLLIN | POLLOUT : POLLIN), 0});
+  } else if (listener_.open()) {
+    waits.push_back({listener_.get(), POLLIN, 0});
+  }
+}
+
+std::int64_t ScipServer::next_event_ns() const {
+  if (back_at_ns_ != 0) return back_at_ns_;
+  if (!client_.open()) return kNever;
+  const auto scan = sensor_->wanted_scan();
+  const std::int64_t scan_ns = scan ? timing_->send_time_ns(*scan) : kNever;
+  return outgoing_.empty() ? scan_ns
+                           : std::min(scan_ns, std::max<std::int64_t>(1, stalled_until_ns_));
+}
+
+void ScipServer::serve(std::int64_t now_ns) {
+  if (back_at_ns_ != 0 && now_ns >= back_at_ns_) {
+    listen();
+    back_at_ns_ = 0;
+  }
+  if (client_.open()) read_client(now_ns);
+  if (!client_.open()) accept_client();
+  if (client_.open()) send_due_scans(now_ns);
+  if (client_.open()) transmit(now_ns);
+  if (sensor_->reboot_requested() && outgoing_.empty()) reboot(now_ns);
+}
+
+void ScipServer::accept_client() {
+  if (!listener_.open()) return;
+  client_ =
+      FileDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!client_.open()) return;
+  const int yes = 1;
+  ::setsockopt(client_.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  sensor_->connect();
+}
+
+void ScipServer::disconnect() {
+  client_.close();
+  outgoing_.clear();
+  glued_.clear();
+  close_when_sent_ = false;
+  stalled_until_ns_ = 0;
+  sensor_->connect();
+}
+
+void ScipServer::reboot(std::int64_t now_ns) {
+  disconnect();
+  listener_.close();
+  back_at_ns_ = now_ns + ns_from_s(options_.reboot_s);
+}
+
+void ScipServer::read_client(std::int64_t now_ns) {
+  char bytes[4096];
+  const ssize_t count = ::recv(client_.get(), bytes, sizeof bytes, 0);
+  if (count > 0) {
+    outgoing_ += sensor_->receive({bytes, static_cast<std::size_t>(count)}, now_ns);
+  } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
+    disconnect();
+  }
+}
+
+void ScipServer::send_due_scans(std::int64_t now_ns) {
+  for (auto scan = sensor_->wanted_scan(); scan && timing_->send_time_ns(*scan) <= now_ns;
+       scan = sensor_->wanted_scan()) {
+    const bool slow = outgoing_.size() > kSlowClient;
+    const auto frames = sensor_->deliver(slow ? LineReading{} : cast_scan_(*scan));
+    if (slow) {
+      ++scans_dropped_;
+      continue;
+    }
+    for (const std::string& frame : frames) send_frame(frame, now_ns);
+  }
+}
+
+void ScipServer::send_frame(std::string frame, std::int64_t now_ns) {
+  if (close_when_sent_) return;
+  const Misbehaviour& wrong = options_.misbehaviour;
+  ++frames_;
+  if (every(wrong.bad_sum_every, frames_)) frame[frame.size() / 2] ^= 1;
+  if (every(wrong.close_every, frames_)) {
+    frame.resize(frame.size() / 2);
+    close_when_sent_ = true;
+  }
+  glued_ += frame;
+  if (wrong.glue_frames > 1 && !every(wrong.glue_frames, frames_) && !close_when_sent_) return;
+  outgoing_ += std::exchange(glued_, {});
+  if (every(wrong.stall_every, frames_)) stalled_until_ns_ = now_ns + ns_from_s(wrong.stall_s);
+}
+
+void ScipServer::transmit(std::int64_t now_ns) {
+  if (now_ns < stalled_until_ns_) return;
+  std::size_t sent = 0;
+  while (sent < outgoing_.size()) {
+    const std::size_t length = options_.misbehaviour.chop ? 1 : outgoing_.size() - sent;
+    const ssize_t count = ::send(client_.get(), outgoing_.data() + sent, length, MSG_NOSIGNAL);
+    if (count < 0 && errno != EAGAIN && errno != EINTR) return disconnect();
+    if (count <= 0) break;
+    sent += static_cast<std::size_t>(count);
+  }
+  outgoing_.erase(0, sent);
+  if (outgoing_.empty() && close_when_sent_) disconnect();
+}
+
+}  // namespace swivel::sim
