@@ -107,6 +107,8 @@ void Assembler::abandon(const msg::Sweep& fault) {
     return;
   msg::Sweep summary = just_closed ? last_closed_ : sweep_->summary("");
   summary.complete(false);
+  summary.lines_used(0);
+  summary.lines_missing(summary.lines_expected());
   summary.reason("motor fault, do not use: " + fault.reason());
   sweep_.reset();
   last_closed_ = summary;
