@@ -1,0 +1,55 @@
+// What the tests of DDS share: participants on the loopback alone, in a domain of the test's
+// own, and clouds that can be told from each other.
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "components/dds/participant.hpp"
+
+namespace swivel {
+
+// Tests run side by side: the process id keeps their domains apart.
+inline int domain_of_this_test() {
+  return 100 + getpid() % 130;
+}
+
+inline const std::string kProfiles = SWIVEL_CONFIG "/dds_profiles.xml";
+
+inline ParticipantOptions loopback_participant(const std::string& name, int domain,
+                                               const std::string& profiles = kProfiles) {
+  return {name, "test_rig", domain, "loopback", profiles};
+}
+
+// As large as a sweep of mode 7. Its bytes follow from its number.
+inline PointCloud2 numbered_cloud(int number) {
+  PointCloud2 cloud;
+  cloud.height(640);
+  cloud.width(1081);
+  cloud.point_step(16);
+  cloud.row_step(16 * cloud.width());
+  cloud.data().resize(std::size_t{cloud.row_step()} * cloud.height());
+  std::uint32_t state = static_cast<std::uint32_t>(number);
+  for (std::uint8_t& byte : cloud.data()) {
+    state = state * 1664525U + 1013904223U;
+    byte = static_cast<std::uint8_t>(state >> 24);
+  }
+  cloud.header().stamp().sec(number);
+  return cloud;
+}
+
+// Until the condition holds; false when the time is over.
+inline bool wait_until(const std::function<bool()>& condition,
+                       std::chrono::seconds limit = std::chrono::seconds(20)) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    usleep(1000);
+  }
+  return true;
+}
+
+}  // namespace swivel
