@@ -13,7 +13,7 @@ namespace swivel {
 struct LidarSettings {
   std::string address;
   bool intensities = true;
-  bool stamp_at_rear_centre = false;
+  bool stamp_at_rear_centre = true;
 };
 
 struct StepperSettings {

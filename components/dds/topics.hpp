@@ -85,6 +85,14 @@ std::uint64_t number_of(const Message& message) {
 }
 inline std::uint64_t number_of(const PointCloud2&) {
   return 0;
-}  // not numbered
+}
+
+template <class Message>
+constexpr bool is_numbered(const Message&) {
+  return true;
+}
+inline bool is_numbered(const PointCloud2&) {
+  return false;
+}
 
 }  // namespace swivel

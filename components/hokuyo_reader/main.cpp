@@ -1,0 +1,120 @@
+// hokuyo_reader: a Hokuyo lidar on TCP or a serial device in, scan lines out. It streams at all
+// times and knows nothing of sweeps.
+#include <spdlog/spdlog.h>
+
+#include <thread>
+
+#include "components/common/health_reporter.hpp"
+#include "components/common/program.hpp"
+#include "components/common/rig_file.hpp"
+#include "hardware/lidar/scip_client.hpp"
+
+namespace {
+
+using namespace swivel;
+
+msg::ScanLine to_message(const LidarScan& scan) {
+  msg::ScanLine line;
+  line.beam0_time_ns(scan.beam0_time_ns);
+  line.arrival_time_ns(scan.arrival_time_ns);
+  line.device_stamp_ms(scan.device_stamp_ms);
+  line.first_beam_angle_deg(scan.first_beam_angle_deg);
+  line.beam_step_deg(scan.beam_step_deg);
+  line.beam_period_ns(scan.beam_period_ns);
+  line.scan_period_ns(scan.scan_period_ns);
+  line.range_min_mm(scan.range_min_mm);
+  line.range_max_mm(scan.range_max_mm);
+  line.ranges_mm(scan.ranges_mm);
+  line.intensities(scan.intensities);
+  return line;
+}
+
+ScipClientOptions client_options(const LidarSettings& lidar) {
+  ScipClientOptions options;
+  options.address = lidar.address;
+  options.intensities = lidar.intensities;
+  options.stamp_origin =
+      lidar.stamp_at_rear_centre ? StampOrigin::kRearCentre : StampOrigin::kFirstBeam;
+  return options;
+}
+
+msg::HealthState health_state(LidarState state) {
+  switch (state) {
+    case LidarState::kStreaming:
+      return msg::HEALTH_OK;
+    case LidarState::kTrouble:
+      return msg::HEALTH_DEGRADED;
+    case LidarState::kConnecting:
+    case LidarState::kWaiting:
+      return msg::HEALTH_WAITING;
+    case LidarState::kStopped:
+      return msg::HEALTH_STOPPED;
+  }
+  return msg::HEALTH_FAULT;
+}
+
+void tell(const LidarReport& report, HealthReporter& health) {
+  if (report.state == LidarState::kWaiting || report.state == LidarState::kTrouble) {
+    health.error(report.words);
+  } else {
+    spdlog::info("{}", report.words);
+  }
+  health.set_state(health_state(report.state), report.words);
+}
+
+void count(const LidarCounters& counters, const Writer<msg::ScanLine>& lines,
+           HealthReporter& health) {
+  health.set_counter("lines_written", lines.written());
+  health.set_counter("lines_not_written", lines.failures());
+  health.set_counter("scans", counters.scans);
+  health.set_counter("scans_lost", counters.lost_scans);
+  health.set_counter("bad_sums", counters.bad_sums);
+  health.set_counter("resyncs", counters.resyncs);
+  health.set_counter("unusable_replies", counters.unusable_replies);
+  health.set_counter("saturated_values", counters.saturated_values);
+  health.set_counter("clock_restarts", counters.clock_restarts);
+  health.set_counter("reconnects", counters.reconnects);
+}
+
+LidarSettings lidar_of(const RigFile& rig, const std::string& address) {
+  if (!rig.lidar) throw ConfigurationError(rig.path + ": has no 'lidar' section to read from");
+  LidarSettings lidar = *rig.lidar;
+  if (!address.empty()) lidar.address = address;
+  return lidar;
+}
+
+int read(const CommonOptions& options, const std::string& address, StopSignal& stop) {
+  const RigFile rig = load_rig_file(options.rig_file);
+  const LidarSettings lidar = lidar_of(rig, address);
+  Participant participant(options.participant("hokuyo_reader", rig.rig));
+  HealthReporter health(participant);
+  Writer<msg::ScanLine> lines(participant, kScanLineTopic);
+  ScipClient client(
+      client_options(lidar), [&](const LidarScan& scan) { lines.write(to_message(scan)); },
+      [&](const LidarReport& report) { tell(report, health); });
+  participant.on_tick(std::chrono::milliseconds(500),
+                      [&] { count(client.counters(), lines, health); });
+  participant.start();
+  std::thread session([&] { client.run(); });
+  while (!stop.wait_for(std::chrono::hours(1))) {
+  }
+  client.stop();
+  session.join();
+  participant.stop();
+  return kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  StopSignal stop;
+  CLI::App app("Reads a Hokuyo lidar and publishes its scan lines", "hokuyo_reader");
+  CommonOptions options;
+  std::string address;
+  add_common_options(app, options);
+  app.add_option("--lidar", address, "tcp://HOST:PORT or /dev/NAME, instead of the rig file's");
+  return run_program(app, argc, argv, [&] {
+    start_log("hokuyo_reader", options.log_level);
+    return read(options, address, stop);
+  });
+}
