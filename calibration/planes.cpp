@@ -1,9 +1,9 @@
 #include "calibration/planes.hpp"
 
-#include <pcl/ModelCoefficients.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/segmentation/sac_segmentation.h>
+#include <pcl/sample_consensus/ransac.h>
+#include <pcl/sample_consensus/sac_model_plane.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -20,7 +20,9 @@ constexpr int kRansacRounds = 400;
 constexpr int kRefinements = 4;
 constexpr double kKeptSigmas = 3.0;     // of the points that a plane is fitted to
 constexpr double kSharedStrip_m = 0.1;  // about another plane, where points could be either's
+constexpr double kThickest = 0.9;       // rms over band: evenly filled space has more
 constexpr std::size_t kLeastPoints = 50;
+constexpr std::size_t kOtherPlanes = 6;  // floor, roof, tables: looked for besides the walls
 
 // Distance from a plane, positive on the rig's side.
 double height_over(const Plane& plane, const Eigen::Vector3f& point) {
@@ -55,26 +57,19 @@ Plane facing_origin(const Eigen::Vector3d& normal, double offset_m) {
   return plane;
 }
 
-std::optional<Plane> segment(const PclCloud::Ptr& cloud, const PlaneOptions& options, bool walls) {
-  pcl::SACSegmentation<pcl::PointXYZ> segmentation;  // its own fixed seed: the same every time
-  segmentation.setModelType(walls ? pcl::SACMODEL_PARALLEL_PLANE : pcl::SACMODEL_PLANE);
-  segmentation.setMethodType(pcl::SAC_RANSAC);
-  segmentation.setDistanceThreshold(options.band_m);
-  segmentation.setMaxIterations(kRansacRounds);
-  segmentation.setOptimizeCoefficients(false);
-  if (walls) {
-    segmentation.setAxis(Eigen::Vector3f::UnitZ());
-    segmentation.setEpsAngle(options.wall_tilt_rad);
-  }
-  segmentation.setInputCloud(cloud);
-  pcl::PointIndices inliers;
-  pcl::ModelCoefficients found;
-  segmentation.segment(inliers, found);
-  if (found.values.size() < 4 || inliers.indices.size() < kLeastPoints) return std::nullopt;
-  const Eigen::Vector3f normal(found.values[0], found.values[1], found.values[2]);
-  Plane plane = facing_origin(normal.cast<double>(), double{found.values[3]});
-  plane.rms_m = options.band_m / kKeptSigmas;
-  plane.points = inliers.indices.size();
+// RANSAC with its own fixed seed: the same cloud gives the same planes.
+std::optional<Plane> segment(const PclCloud::Ptr& cloud, double band_m) {
+  const auto model = pcl::make_shared<pcl::SampleConsensusModelPlane<pcl::PointXYZ>>(cloud);
+  pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(model, band_m);
+  consensus.setMaxIterations(kRansacRounds);
+  if (!consensus.computeModel()) return std::nullopt;
+  Eigen::VectorXf found;
+  pcl::Indices inliers;
+  consensus.getModelCoefficients(found);
+  consensus.getInliers(inliers);
+  if (found.size() < 4 || inliers.size() < kLeastPoints) return std::nullopt;
+  Plane plane = facing_origin(found.head<3>().cast<double>(), double{found[3]});
+  plane.points = inliers.size();
   return plane;
 }
 
@@ -149,31 +144,21 @@ std::optional<Plane> refine(const Points& points, std::vector<Plane> planes, std
   return planes[own];
 }
 
-bool is_wall(const Plane& plane, const PlaneOptions& options) {
-  return std::abs(plane.normal.z()) <= std::sin(options.wall_tilt_rad);
-}
-
-std::vector<Plane> find(const OrganisedCloud& cloud, std::size_t count, const PlaneOptions& options,
-                        bool walls) {
-  const Points points = valid_points(cloud);
+// The largest planes, one after the other, each taken out before the next is looked for: so
+// floor and roof are gone when the walls come, and no upright plane is made of their points.
+std::vector<Plane> find_roughly(const Points& points, std::size_t count,
+                                const PlaneOptions& options) {
   const PclCloud::Ptr rest = sample(points, options.sampled);
-  const auto least =
-      std::max(kLeastPoints,
-               static_cast<std::size_t>(options.least_share * static_cast<double>(rest->size())));
-  std::vector<Plane> rough;
-  while (rough.size() < count && rest->size() >= least) {
-    const auto plane = segment(rest, options, walls);
+  const auto share =
+      static_cast<std::size_t>(options.least_share * static_cast<double>(rest->size()));
+  const std::size_t least = std::max(kLeastPoints, share);
+  std::vector<Plane> planes;
+  while (planes.size() < count && rest->size() >= least) {
+    const auto plane = segment(rest, options.band_m);
     if (!plane || plane->points < least) break;
-    rough.push_back(*plane);
+    planes.push_back(*plane);
     remove_near(*plane, 2.0 * options.band_m, *rest);
   }
-  std::vector<Plane> planes;
-  for (std::size_t own = 0; own < rough.size(); ++own) {
-    const auto plane = refine(points, rough, own, options);
-    if (plane && (!walls || is_wall(*plane, options))) planes.push_back(*plane);
-  }
-  std::sort(planes.begin(), planes.end(),
-            [](const Plane& one, const Plane& other) { return one.points > other.points; });
   return planes;
 }
 
@@ -181,12 +166,27 @@ std::vector<Plane> find(const OrganisedCloud& cloud, std::size_t count, const Pl
 
 std::vector<Plane> find_planes(const OrganisedCloud& cloud, std::size_t count,
                                const PlaneOptions& options) {
-  return find(cloud, count, options, false);
+  const Points points = valid_points(cloud);
+  const std::vector<Plane> rough = find_roughly(points, count, options);
+  std::vector<Plane> planes;
+  for (std::size_t own = 0; own < rough.size(); ++own) {
+    const auto plane = refine(points, rough, own, options);
+    if (plane && plane->rms_m <= kThickest * options.band_m) planes.push_back(*plane);
+  }
+  std::sort(planes.begin(), planes.end(),
+            [](const Plane& one, const Plane& other) { return one.points > other.points; });
+  return planes;
 }
 
 std::vector<Plane> find_walls(const OrganisedCloud& cloud, std::size_t count,
                               const PlaneOptions& options) {
-  return find(cloud, count, options, true);
+  std::vector<Plane> walls = find_planes(cloud, count + kOtherPlanes, options);
+  const auto leans = [&options](const Plane& plane) {
+    return std::abs(plane.normal.z()) > std::sin(options.wall_tilt_rad);
+  };
+  walls.erase(std::remove_if(walls.begin(), walls.end(), leans), walls.end());
+  if (walls.size() > count) walls.resize(count);
+  return walls;
 }
 
 }  // namespace swivel

@@ -117,9 +117,10 @@ std::optional<PlateBeam> beam_at_plate(const CloudPoint& point, const PlateGeome
 }
 
 Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, double beta_rad) {
+  const PlateOutline outline(plate, beta_rad);
   Tally tally;
   for (const PlateBeam& beam : beams) {
-    if (inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m) > kInsideMargin_m) {
+    if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMargin_m) {
       tally.add(beam.in_ring);
     }
   }
@@ -130,10 +131,11 @@ Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, 
 // the further from it, up to kFitDepth_m.
 double outline_score(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
                      double beta_rad, std::size_t stride) {
+  const PlateOutline outline(plate, beta_rad);
   double score = 0.0;
   for (std::size_t index = 0; index < beams.size(); index += stride) {
     const PlateBeam& beam = beams[index];
-    const double inside_m = inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m);
+    const double inside_m = outline.inside_m(beam.x_m, beam.y_m);
     const double weight = beam.in_ring ? 1.0 - kFitShare : -kFitShare;
     score += weight * std::clamp(inside_m, -kFitDepth_m, kFitDepth_m);
   }
@@ -221,9 +223,10 @@ std::string missing_lines(const LineAzimuths& azimuths, double beta_rad) {
 // Cells on the plate in which far less was seen than in the others.
 std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
                         double beta_rad) {
+  const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
   for (const PlateBeam& beam : beams) {
-    if (inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m) > kInsideMargin_m) {
+    if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMargin_m) {
       grid.cell_of(beam).add(beam.in_ring);
     }
   }
@@ -248,9 +251,10 @@ std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>
 // Cells outside of the plate in which something was seen.
 std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
                            double beta_rad) {
+  const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
   for (const PlateBeam& beam : beams) {
-    if (inside_outline_m(plate, beta_rad, beam.x_m, beam.y_m) < -kOutsideMargin_m) {
+    if (outline.inside_m(beam.x_m, beam.y_m) < -kOutsideMargin_m) {
       grid.cell_of(beam).add(beam.in_ring);
     }
   }
@@ -291,12 +295,15 @@ std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGe
   return beams;
 }
 
-double inside_outline_m(const PlateGeometry& plate, double beta_rad, double x_m, double y_m) {
-  const double along_m = std::cos(beta_rad) * x_m + std::sin(beta_rad) * y_m;
-  const double across_m = -std::sin(beta_rad) * x_m + std::cos(beta_rad) * y_m;
-  const double beyond_base_m = along_m - plate.base_distance_m;
+PlateOutline::PlateOutline(const PlateGeometry& plate, double beta_rad)
+    : plate_(plate), cos_beta_(std::cos(beta_rad)), sin_beta_(std::sin(beta_rad)) {}
+
+double PlateOutline::inside_m(double x_m, double y_m) const {
+  const double along_m = cos_beta_ * x_m + sin_beta_ * y_m;
+  const double across_m = -sin_beta_ * x_m + cos_beta_ * y_m;
+  const double beyond_base_m = along_m - plate_.base_distance_m;
   const double short_of_legs_m =
-      (plate.hypotenuse_m / 2 - beyond_base_m - std::abs(across_m)) * std::sqrt(0.5);
+      (plate_.hypotenuse_m / 2 - beyond_base_m - std::abs(across_m)) * std::sqrt(0.5);
   return std::min(beyond_base_m, short_of_legs_m);
 }
 

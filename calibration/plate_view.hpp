@@ -25,8 +25,19 @@ struct PlateBeam {
 std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
                                       const RigGeometry& rig);
 
-// How far a place lies inside the outline of a plate at azimuth beta; negative outside.
-double inside_outline_m(const PlateGeometry& plate, double beta_rad, double x_m, double y_m);
+// The triangle that a plate at azimuth beta covers, seen from above.
+class PlateOutline {
+ public:
+  PlateOutline(const PlateGeometry& plate, double beta_rad);
+
+  // How far a place lies inside; negative outside.
+  double inside_m(double x_m, double y_m) const;
+
+ private:
+  PlateGeometry plate_;
+  double cos_beta_;
+  double sin_beta_;
+};
 
 // Yuan's cut: the half ring on X' > 0 about the plate's plane.
 bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m);
