@@ -1,0 +1,66 @@
+// swivel-bench: a lidar on TCP and a stepper on a pty that are not there, and the truth about
+// them.
+#include <spdlog/spdlog.h>
+
+#include <future>
+#include <iostream>
+#include <thread>
+
+#include "components/common/program.hpp"
+#include "components/swivel_bench/bench_options.hpp"
+#include "hardware/io/wake_up.hpp"
+
+namespace {
+
+using namespace swivel;
+
+// One line, for scripts and tests.
+void print_addresses(const sim::Bench& bench, const std::string& link) {
+  std::cout << "lidar tcp://127.0.0.1:" << bench.port() << " stepper "
+            << (link.empty() ? bench.stepper_path() : link) << std::endl;
+}
+
+void log_losses(const sim::Bench& bench) {
+  spdlog::info("{} lines sent", bench.lines_sent());
+  if (bench.scans_dropped() > 0) {
+    spdlog::warn("{} scans dropped: the client reads too slowly", bench.scans_dropped());
+  }
+  if (bench.stepper_bytes_lost() > 0) {
+    spdlog::warn("{} bytes to the stepper lost: its buffer was full", bench.stepper_bytes_lost());
+  }
+}
+
+// The bench runs on a thread of its own, since this one waits for the signal.
+int serve(sim::Bench& bench, StopSignal& stop) {
+  const WakeUp end;
+  auto running = std::async(std::launch::async, [&] { bench.run(end); });
+  const auto ended = [&] {
+    return running.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  while (!stop.wait_for(std::chrono::milliseconds(200)) && !ended()) {
+  }
+  end.notify();
+  running.get();  // throws what the bench could not go on with
+  log_losses(bench);
+  return kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  StopSignal stop;
+  CLI::App app("Stands in for lidar and stepper on the real wires, and knows the truth",
+               "swivel-bench");
+  BenchCommandLine command_line(app);
+  return run_program(app, argc, argv, [&] {
+    start_log("swivel-bench", command_line.log_level());
+    const sim::BenchOptions options = command_line.options();
+    try {
+      sim::Bench bench(options);
+      print_addresses(bench, options.stepper_link);
+      return serve(bench, stop);
+    } catch (const std::exception& error) {
+      throw ExitError(kExitUnavailable, error.what());
+    }
+  });
+}
