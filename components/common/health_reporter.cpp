@@ -61,6 +61,11 @@ void HealthReporter::set_counter(const std::string& name, std::uint64_t value) {
   counters_[name] = value;
 }
 
+void HealthReporter::set_fact(const std::string& name, const std::string& value) {
+  const std::lock_guard lock(mutex_);
+  facts_[name] = value;
+}
+
 void HealthReporter::publish() {
   counters_["samples_lost"] = participant_.samples_lost();
   health_.time_ns(now_ns());
@@ -70,6 +75,13 @@ void HealthReporter::publish() {
     counter.name(name);
     counter.value(value);
     health_.counters().push_back(counter);
+  }
+  health_.facts().clear();
+  for (const auto& [name, value] : facts_) {
+    msg::Fact fact;
+    fact.name(name);
+    fact.value(value);
+    health_.facts().push_back(fact);
   }
   writer_.write(health_);
 }

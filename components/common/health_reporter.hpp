@@ -21,6 +21,7 @@ class HealthReporter {
   // Logs it, too.
   void error(const std::string& what);
   void set_counter(const std::string& name, std::uint64_t value);
+  void set_fact(const std::string& name, const std::string& value);
 
  private:
   void publish();
@@ -30,6 +31,7 @@ class HealthReporter {
   std::mutex mutex_;
   msg::Health health_;
   std::map<std::string, std::uint64_t> counters_;
+  std::map<std::string, std::string> facts_;
 };
 
 }  // namespace swivel

@@ -33,6 +33,10 @@ inline constexpr Topic<PointCloud2> kRawCloudTopic{"raw_cloud", true};
 inline constexpr Topic<PointCloud2> kCloudTopic{"cloud", true};
 inline constexpr Topic<msg::Attitude> kAttitudeTopic{"attitude", false};
 inline constexpr Topic<msg::Calibration> kCalibrationTopic{"calibration", false};
+inline constexpr Topic<msg::CalibrationRequest> kCalibrationRequestTopic{"calibration_request",
+                                                                         false};
+inline constexpr Topic<msg::CalibrationProgress> kCalibrationProgressTopic{"calibration_progress",
+                                                                           false};
 inline constexpr Topic<msg::Health> kHealthTopic{"health", false};
 
 template <class Message>
@@ -60,6 +64,14 @@ struct TypeSupportOf<msg::Attitude> {
 template <>
 struct TypeSupportOf<msg::Calibration> {
   using Type = msg::CalibrationPubSubType;
+};
+template <>
+struct TypeSupportOf<msg::CalibrationRequest> {
+  using Type = msg::CalibrationRequestPubSubType;
+};
+template <>
+struct TypeSupportOf<msg::CalibrationProgress> {
+  using Type = msg::CalibrationProgressPubSubType;
 };
 template <>
 struct TypeSupportOf<msg::Health> {

@@ -7,6 +7,7 @@
 #include "components/common/health_reporter.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
+#include "components/common/strict_yaml.hpp"
 #include "hardware/lidar/scip_client.hpp"
 
 namespace {
@@ -76,6 +77,13 @@ void count(const LidarCounters& counters, const Writer<msg::ScanLine>& lines,
   health.set_counter("reconnects", counters.reconnects);
 }
 
+void name_lidar(const std::optional<LidarIdentity>& lidar, HealthReporter& health) {
+  if (!lidar) return;
+  health.set_fact("model", lidar->product);
+  health.set_fact("serial_number", lidar->serial_number);
+  health.set_fact("firmware", lidar->firmware);
+}
+
 LidarSettings lidar_of(const RigFile& rig, const std::string& address) {
   if (!rig.lidar) throw ConfigurationError(rig.path + ": has no 'lidar' section to read from");
   LidarSettings lidar = *rig.lidar;
@@ -92,8 +100,10 @@ int read(const CommonOptions& options, const std::string& address, StopSignal& s
   ScipClient client(
       client_options(lidar), [&](const LidarScan& scan) { lines.write(to_message(scan)); },
       [&](const LidarReport& report) { tell(report, health); });
-  participant.on_tick(std::chrono::milliseconds(500),
-                      [&] { count(client.counters(), lines, health); });
+  participant.on_tick(std::chrono::milliseconds(500), [&] {
+    count(client.counters(), lines, health);
+    name_lidar(client.identity(), health);
+  });
   participant.start();
   std::thread session([&] { client.run(); });
   while (!stop.wait_for(std::chrono::hours(1))) {

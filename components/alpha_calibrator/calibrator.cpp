@@ -1,0 +1,123 @@
+#include "components/alpha_calibrator/calibrator.hpp"
+
+#include "components/common/cloud_message.hpp"
+#include "hardware/io/clock.hpp"
+
+namespace swivel {
+namespace {
+
+// The longest that a whole sweep of any mode and its way through the pipeline take.
+constexpr auto kPatience = std::chrono::seconds(120);
+
+}  // namespace
+
+Calibrator::Calibrator(const RigFile& rig, Outputs outputs)
+    : rig_(rig), outputs_(std::move(outputs)), requester_(outputs_.request_sweeps) {}
+
+void Calibrator::take(const msg::CalibrationRequest& request) {
+  if (request.request_id() == last_request_id_) return;  // repeated until it is answered
+  if (run_) {
+    msg::CalibrationProgress busy;
+    busy.request_id(request.request_id());
+    busy.state(msg::CALIBRATION_REFUSED);
+    busy.words("busy with another calibration; try again when it is done");
+    return outputs_.tell(busy);
+  }
+  last_request_id_ = request.request_id();
+  run_.emplace(Run{AlphaCalibration(rig_, request.room_yaw_deg()),
+                   request.request_id(),
+                   request.count(),
+                   0,
+                   {},
+                   {},
+                   {}});
+  news_ = true;
+  tell(msg::CALIBRATION_COLLECTING, "asking for " + std::to_string(request.count()) +
+                                        " sweeps of mode " + std::to_string(request.mode()));
+  requester_.request(request.request_id(), request.mode(), request.count());
+}
+
+void Calibrator::take(const msg::Sweep& sweep) {
+  if (!run_ || !requester_.saw(sweep)) return;
+  news_ = true;
+  if (sweep.phase() == msg::PHASE_REFUSED) return refuse("no sweep: " + sweep.reason());
+  if (sweep.phase() == msg::PHASE_FAULT) return refuse("motor fault: " + sweep.reason());
+  if (sweep.sweep_id() != 0) run_->sweeps.insert(sweep.sweep_id());
+  if (sweep.phase() == msg::PHASE_ASSEMBLED && sweep.lines_used() == 0) {
+    leave_out(sweep.sweep_id(), sweep.reason());
+  }
+}
+
+void Calibrator::take(const msg::Attitude& attitude) {
+  if (!run_) return;
+  run_->attitudes[attitude.first_beam_time_ns()] = attitude;
+  match();
+}
+
+void Calibrator::take(const PointCloud2Message& raw_cloud) {
+  if (!run_) return;
+  cloud_stamp_ns_ = from_message(raw_cloud, cloud_).empty() ? stamp_ns(raw_cloud) : 0;
+  match();
+}
+
+void Calibrator::match() {
+  const auto found = run_->attitudes.find(cloud_stamp_ns_);
+  if (found == run_->attitudes.end()) return;
+  const msg::Attitude attitude = found->second;
+  run_->attitudes.erase(run_->attitudes.begin(), std::next(found));
+  if (run_->sweeps.count(attitude.sweep_id()) == 0) return;
+  const AlphaCalibration::Added added = run_->calibration.add(attitude, cloud_);
+  if (!added.used) return leave_out(attitude.sweep_id(), added.words);
+  count(attitude.sweep_id(), added.words);
+}
+
+void Calibrator::leave_out(std::uint64_t sweep_id, const std::string& why) {
+  if (run_->done.count(sweep_id) != 0) return;
+  ++run_->left_out;
+  count(sweep_id, "left out: " + why);
+}
+
+void Calibrator::count(std::uint64_t sweep_id, const std::string& words) {
+  if (!run_->done.insert(sweep_id).second) return;
+  news_ = true;
+  tell(msg::CALIBRATION_COLLECTING, words);
+  if (run_->done.size() >= run_->wanted) finish();
+}
+
+void Calibrator::finish() {
+  const AlphaCalibration::Outcome outcome = run_->calibration.fit(lidar_, now_ns());
+  if (!outcome.calibration) return refuse(outcome.words);
+  outputs_.publish(*outcome.calibration);
+  tell(msg::CALIBRATION_DONE, outcome.words);
+  run_.reset();
+}
+
+void Calibrator::check(std::chrono::steady_clock::time_point now) {
+  if (!run_) return;
+  if (news_) last_news_ = now;
+  news_ = false;
+  if (!requester_.check(now)) {
+    refuse("stepper_sequencer does not answer; does it run? see: swivel status");
+  } else if (now - last_news_ > kPatience) {
+    refuse("no sweep for 2 minutes; see: swivel status");
+  }
+}
+
+void Calibrator::refuse(const std::string& why) {
+  requester_.cancel();
+  tell(msg::CALIBRATION_REFUSED, why);
+  run_.reset();
+}
+
+void Calibrator::tell(msg::CalibrationState state, const std::string& words) {
+  msg::CalibrationProgress progress;
+  progress.request_id(run_->request_id);
+  progress.state(state);
+  progress.sweeps_used(static_cast<std::uint16_t>(run_->calibration.sweeps_used()));
+  progress.sweeps_left_out(static_cast<std::uint16_t>(run_->left_out));
+  progress.sweeps_wanted(static_cast<std::uint16_t>(run_->wanted));
+  progress.words(words);
+  outputs_.tell(progress);
+}
+
+}  // namespace swivel
