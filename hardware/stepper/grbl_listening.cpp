@@ -15,7 +15,6 @@ void GrblStepper::forget_connection() {
   garbage_before_ += parser_.garbage_lines();
   parser_ = GrblParser();
   homed_ = false;
-  may_turn_ = false;
   was_reset_ = false;
   alarm_.reset();
 }

@@ -182,7 +182,7 @@ Result<StepperStatus> GrblStepper::wait_idle(Milliseconds timeout) {
 }
 
 Outcome GrblStepper::halt() {
-  if (!stream_ && !may_turn_) return Done{};
+  if (!may_turn_) return Done{};
   if (!stream_) return Failure{"the controller is gone: a turn under way runs to its end"};
   if (!trouble() && run_down()) return Done{};
   Outcome cut = reset(kCutTimeout, nullptr);
