@@ -97,6 +97,19 @@ SweepAlpha alpha_of(const AlphaSweep& sweep, const FourWalls& sides, const Alpha
           std::hypot(sweep.beta_sigma_rad, std::sqrt(variance))};
 }
 
+// The robust loss is there for walls that are out of square. Where the sweeps themselves scatter
+// by more, it must not take them for that.
+AlphaOptions widened(const AlphaOptions& options, const std::vector<SweepAlpha>& alphas) {
+  std::vector<double> values;
+  for (const SweepAlpha& alpha : alphas) values.push_back(alpha.alpha_rad);
+  const double middle_rad = median(values);
+  for (double& value : values) value = std::abs(value - middle_rad);
+  constexpr double kSdOfMedian = 1.4826;  // of absolute deviations, for a normal distribution
+  AlphaOptions wider = options;
+  wider.robust_scale_rad = std::max(options.robust_scale_rad, 2.0 * kSdOfMedian * median(values));
+  return wider;
+}
+
 std::string why_sweeps_disagree(const std::vector<SweepAlpha>& alphas,
                                 const AlphaOptions& options) {
   std::vector<double> values;
@@ -152,16 +165,18 @@ void add_residuals(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
 ceres::Solver::Summary solve(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
                              const AlphaOptions& options, ceres::LossFunction* loss,
                              double& alpha_rad) {
-  ceres::Problem problem;
+  ceres::Problem::Options ownership;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // all residuals share one
+  ceres::Problem problem(ownership);
   add_residuals(sweeps, sides, options, loss, &alpha_rad, problem);
   ceres::Solver::Options solver;
   solver.minimizer_type = ceres::TRUST_REGION;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.most_iterations;
-  solver.function_tolerance = 1e-16;
-  solver.gradient_tolerance = 1e-14;
-  solver.parameter_tolerance = 1e-12;
+  solver.function_tolerance = 1e-12;
+  solver.gradient_tolerance = 1e-12;
+  solver.parameter_tolerance = 1e-11;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
@@ -309,7 +324,7 @@ AlphaResult fit_alpha(const std::vector<AlphaSweep>& sweeps, const AlphaOptions&
   }
   const std::string disagreement = why_sweeps_disagree(alphas, options);
   if (!disagreement.empty()) return {std::nullopt, disagreement};
-  const AlphaFit fit = fit_walls(sweeps, sides, alphas, options);
+  const AlphaFit fit = fit_walls(sweeps, sides, alphas, widened(options, alphas));
   const std::string skewed = why_room_is_skewed(fit, options);
   if (!skewed.empty()) return {std::nullopt, skewed};
   if (!fit.converged) {

@@ -1,5 +1,6 @@
 #include "calibration/planes.hpp"
 
+#include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/sample_consensus/ransac.h>
@@ -166,6 +167,7 @@ std::vector<Plane> find_roughly(const Points& points, std::size_t count,
 
 std::vector<Plane> find_planes(const OrganisedCloud& cloud, std::size_t count,
                                const PlaneOptions& options) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // finding none is an answer, no error
   const Points points = valid_points(cloud);
   const std::vector<Plane> rough = find_roughly(points, count, options);
   std::vector<Plane> planes;

@@ -13,7 +13,7 @@ namespace {
 // Beams nearer to the outline than this say neither inside nor outside: the spot is 4 mm, the
 // lines of the fastest mode lie 6 mm apart.
 constexpr double kInsideMargin_m = 0.004;
-constexpr double kOutsideMargin_m = 0.008;
+constexpr double kOutsideMargin_m = 0.006;
 
 constexpr double kSearch_rad = rad_from_deg(30.0);
 constexpr double kSearchStep_rad = rad_from_deg(0.5);
@@ -51,7 +51,7 @@ class CellGrid {
   CellGrid(const PlateGeometry& plate, double beta_rad) : plate_(plate), beta_rad_(beta_rad) {}
 
   Tally& cell_of(const PlateBeam& beam) {
-    const double azimuth_rad = std::remainder(std::atan2(beam.y_m, beam.x_m) - beta_rad_, 2 * kPi);
+    const double azimuth_rad = std::remainder(beam.azimuth_rad - beta_rad_, 2 * kPi);
     const double radius_m = std::hypot(beam.x_m, beam.y_m);
     const double part =
         (radius_m - plate_.ring_inner_m) / (plate_.ring_outer_m - plate_.ring_inner_m);
@@ -113,7 +113,8 @@ std::optional<PlateBeam> beam_at_plate(const CloudPoint& point, const PlateGeome
   if (met.x() <= 0.0 || radius_m < plate.ring_inner_m || radius_m > plate.ring_outer_m) {
     return std::nullopt;
   }
-  return PlateBeam{met.x(), met.y(), 0, in_ring(point, plate, lever_arm_m.z() - plate.depth_m)};
+  return PlateBeam{met.x(), met.y(), std::atan2(met.y(), met.x()), 0,
+                   in_ring(point, plate, lever_arm_m.z() - plate.depth_m)};
 }
 
 Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, double beta_rad) {
@@ -175,14 +176,14 @@ LineAzimuths fit_line_azimuths(const std::vector<PlateBeam>& beams, std::size_t 
   for (const PlateBeam& beam : beams) {
     ++fit.beams[beam.line];
     mean_line += static_cast<double>(beam.line) / count;
-    mean_rad += std::atan2(beam.y_m, beam.x_m) / count;
+    mean_rad += beam.azimuth_rad / count;
   }
   double squares = 0.0;
   double products = 0.0;
   for (const PlateBeam& beam : beams) {
     const double from_mean = static_cast<double>(beam.line) - mean_line;
     squares += from_mean * from_mean;
-    products += from_mean * (std::atan2(beam.y_m, beam.x_m) - mean_rad);
+    products += from_mean * (beam.azimuth_rad - mean_rad);
   }
   fit.step_rad = squares > 0.0 ? products / squares : 0.0;
   fit.first_rad = mean_rad - fit.step_rad * mean_line;
@@ -213,7 +214,7 @@ std::string missing_lines(const LineAzimuths& azimuths, double beta_rad) {
   std::size_t missing = 0;
   for (auto line = static_cast<std::size_t>(first); line <= static_cast<std::size_t>(last);
        ++line) {
-    if (2 * azimuths.beams[line] < usual) ++missing;
+    if (4 * azimuths.beams[line] < usual) ++missing;
   }
   if (missing == 0) return {};
   return in_words(missing, " of the ", last - first + 1.0,

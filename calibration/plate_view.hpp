@@ -17,6 +17,7 @@ namespace swivel {
 struct PlateBeam {
   double x_m = 0.0;  // where it meets the plane, in O'
   double y_m = 0.0;
+  double azimuth_rad = 0.0;
   std::size_t line = 0;
   bool in_ring = false;  // the point that it measured lies in the ring
 };

@@ -23,7 +23,9 @@ Values read_values(const std::string& path) {
   return values;
 }
 
-double number(const Values& values, const std::string& key) { return std::stod(values.at(key)); }
+double number(const Values& values, const std::string& key) {
+  return std::stod(values.at(key));
+}
 
 std::vector<double> numbers(const Values& values, const std::string& key) {
   std::istringstream text(values.at(key));

@@ -10,7 +10,7 @@ namespace swivel {
 
 struct PlateSweep {
   int mode = 0;
-  OrganisedCloud cloud;        // frame O'
+  OrganisedCloud cloud;         // frame O'
   double phi_offset_rad = 0.0;  // truth: of line 0
 };
 
