@@ -92,7 +92,7 @@ std::string ScipClient::serve_connection() {
     return stream.reason();
   }
   const Outcome started = session->start_scans(stream->request);
-  const std::string reason = started ? stream_scans(*session, *stream) : started.reason();
+  std::string reason = started ? stream_scans(*session, *stream) : started.reason();
   session->leave();
   return reason;
 }
@@ -128,6 +128,7 @@ Result<ScipClient::Stream> ScipClient::prepare(scip::Session& session) {
 void ScipClient::read_clock(scip::Session& session, DeviceClock& clock) {
   const Result<std::vector<scip::ClockReading>> readings =
       session.read_clock(options_.clock_readings);
+  if (!readings && stopping_) return;
   if (!readings) {
     report(
         LidarState::kConnecting,
@@ -149,7 +150,7 @@ std::string ScipClient::stream_scans(scip::Session& session, Stream& stream) {
     const auto next = session.next_reply(stream.last_good_scan + longest_wait);
     count_damage(session, counted);
     if (!next) return next.reason();
-    const std::string reason = *next ? take(**next, stream) : std::string();
+    std::string reason = *next ? take(**next, stream) : std::string();
     if (!reason.empty()) return reason;
     if (steady_clock::now() - stream.last_good_scan >= longest_wait)
       return "no good scan for " + std::to_string(longest_wait.count()) +

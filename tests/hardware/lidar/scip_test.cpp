@@ -3,61 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "hardware/lidar/scip_parser.hpp"
 #include "hardware/lidar/scip_replies.hpp"
+#include "tests/hardware/lidar/scip_samples.hpp"
 
 namespace swivel::scip {
 namespace {
 
 using testing::HasSubstr;
-
-std::string reply_of(const std::string& echo, const std::string& status,
-                     const std::string& texts = {}) {
-  std::string reply = echo + "\n";
-  append_text(reply, status);
-  return reply + texts + "\n";
-}
-
-// A scan of `beams` whose beam k measures 20 k + `shift` mm, of intensity 1000 + k.
-std::string scan_of(int beams, bool has_intensities, std::uint32_t shift = 0) {
-  std::string texts;
-  append_text(texts, encode_value(0x123456 + shift, 4));
-  std::string data;
-  for (std::uint32_t beam = 0; beam < static_cast<std::uint32_t>(beams); ++beam) {
-    append_value(data, 20 * beam + shift, 3);
-    if (has_intensities) append_value(data, 1000 + beam, 3);
-  }
-  append_data(texts, data);
-  return reply_of(has_intensities ? "ME0000108001000" : "MD0000108001000", "99", texts);
-}
-
-std::string parameters_reply(const std::string& last_key = {}, const std::string& last_value = {}) {
-  std::string texts;
-  append_key(texts, "MODL", "UST-10LX");
-  append_key(texts, "DMIN", "20");
-  append_key(texts, "DMAX", "30000");
-  append_key(texts, "ARES", "1440");
-  append_key(texts, "AMIN", "0");
-  append_key(texts, "AMAX", "1080");
-  append_key(texts, "AFRT", "540");
-  append_key(texts, "SCAN", "2400");
-  if (!last_key.empty()) append_key(texts, last_key, last_value);
-  return reply_of("PP", "00", texts);
-}
-
-Reply parsed(const std::string& bytes) {
-  Parser parser;
-  const std::vector<Reply> replies = parser.push(bytes);
-  EXPECT_EQ(replies.size(), 1U);
-  return replies.empty() ? Reply{} : replies.front();
-}
-
-bool operator_equal(const Reply& left, const Reply& right) {
-  return left.echo == right.echo && left.status == right.status && left.texts == right.texts &&
-         left.text_ends == right.text_ends;
-}
 
 // C-42-04076, page 5, and sums that drivers print.
 TEST(Scip, TheSpecificationsOwnNumbers) {
@@ -146,7 +98,7 @@ TEST(Scip, ScansThatAreNotAsAskedForAreRefusedInWords) {
   EXPECT_THAT(reason(reply_of("MD", "99"), Measurement::kRanges), HasSubstr("missing"));
   texts.clear();
   append_text(texts, "0000");
-  append_data(texts, std::string(3 * 1081, '!'));
+  append_data(texts, std::string(std::size_t{3} * 1081, '!'));
   EXPECT_THAT(reason(reply_of("MD", "99", texts), Measurement::kRanges), HasSubstr("not allowed"));
 }
 
@@ -252,98 +204,6 @@ TEST(Scip, BeamsKnowWhetherTheyMeasured) {
   EXPECT_EQ(status(30001), BeamStatus::kOutOfRange);
   EXPECT_EQ(status(65535), BeamStatus::kOutOfRange);
   EXPECT_EQ(beam_status(4, 0, 65532), BeamStatus::kTooNear);
-}
-
-// What a session says, in one string.
-std::string conversation() {
-  std::string texts;
-  append_text(texts, encode_value(42, 4));
-  return reply_of("QT", "00") + parameters_reply() + reply_of("TM1", "00", texts) +
-         reply_of("ME0000108001000", "00") + scan_of(1081, true, 1) + scan_of(1081, true, 2);
-}
-
-TEST(ScipParser, AnyCuttingOfTheBytesGivesTheSameReplies) {
-  const std::string bytes = conversation();
-  const std::vector<Reply> expected = Parser().push(bytes);
-  ASSERT_EQ(expected.size(), 6U);
-  std::mt19937 random(7);
-  for (const std::size_t longest : {1U, 2U, 7U, 64U, 1000U, 5000U}) {
-    Parser parser;
-    std::vector<Reply> replies;
-    for (std::size_t start = 0; start < bytes.size();) {
-      const std::size_t count = 1 + random() % longest;
-      for (Reply& reply : parser.push(std::string_view(bytes).substr(start, count)))
-        replies.push_back(std::move(reply));
-      start += count;
-    }
-    ASSERT_EQ(replies.size(), expected.size()) << longest;
-    for (std::size_t which = 0; which < replies.size(); ++which)
-      EXPECT_TRUE(operator_equal(replies[which], expected[which])) << longest;
-    EXPECT_EQ(parser.counters().resyncs, 0U);
-  }
-}
-
-// A change of one bit is seen by the sum, or falls on the frame and drops the reply. Where it hits
-// a line end, the sum of the two lines in one is right by chance once in 64: the values are then
-// too few. The echo has no sum, and is the session's to check.
-TEST(ScipParser, OneChangedBitNeverGivesAWrongScan) {
-  const std::string good = scan_of(60, true);
-  const auto decode = [](const Reply& reply) {
-    return decode_scan(reply, Measurement::kRangesAndIntensities, 60);
-  };
-  const auto truth = decode(parsed(good));
-  for (std::size_t place = 0; place < 8 * good.size(); ++place) {
-    std::string damaged = good;
-    damaged[place / 8] = static_cast<char>(damaged[place / 8] ^ 1 << place % 8);
-    Parser parser;
-    std::size_t scans = 0;
-    for (const Reply& reply : parser.push(damaged + good + good)) {
-      const auto scan = decode(reply);
-      if (!scan) continue;
-      ++scans;
-      ASSERT_EQ(scan->ranges_mm, truth->ranges_mm) << place;
-      ASSERT_EQ(scan->stamp_ms, truth->stamp_ms) << place;
-    }
-    ASSERT_GE(scans, 1U) << place;
-  }
-}
-
-TEST(ScipParser, AWrongSumCostsOneReplyAndIsCounted) {
-  std::string damaged = scan_of(1081, true, 1);
-  damaged[200] = damaged[200] == '0' ? '1' : '0';
-  Parser parser;
-  const std::vector<Reply> replies =
-      parser.push(scan_of(1081, true) + damaged + scan_of(1081, true, 2));
-  ASSERT_EQ(replies.size(), 2U);
-  EXPECT_EQ(decode_scan(replies[1], Measurement::kRangesAndIntensities, 1081)->stamp_ms, 0x123458U);
-  EXPECT_EQ(parser.counters().bad_sums, 1U);
-  EXPECT_EQ(parser.counters().resyncs, 1U);
-}
-
-TEST(ScipParser, GarbageGivesNoScanAndTheNextReplyIsWhole) {
-  std::mt19937 random(11);
-  for (int round = 0; round < 300; ++round) {
-    std::string garbage(random() % 5000, '\0');
-    for (char& byte : garbage)
-      byte = static_cast<char>(round % 2 == 0 ? random() : "\n0QPM9b"[random() % 7]);
-    Parser parser;
-    for (const Reply& reply : parser.push(garbage + "\n\n"))
-      EXPECT_FALSE(decode_scan(reply, Measurement::kRanges, 1081));
-    const std::vector<Reply> replies = parser.push(conversation());
-    EXPECT_EQ(replies.size(), 6U) << round;
-  }
-}
-
-TEST(ScipParser, EndlessLinesAndEndlessRepliesAreCutShort) {
-  Parser parser;
-  const std::string line(1'000'000, 'x');
-  for (int time = 0; time < 50; ++time) EXPECT_TRUE(parser.push(line).empty());
-  EXPECT_EQ(parser.push("\n\n" + conversation()).size(), 6U);
-  std::string reply = "ME\n99b\n";
-  for (int text = 0; text < 100'000; ++text) append_text(reply, std::string(64, '0'));
-  EXPECT_TRUE(parser.push(reply + "\n").empty());
-  EXPECT_EQ(parser.counters().resyncs, 2U);
-  EXPECT_EQ(parser.push(conversation()).size(), 6U);
 }
 
 }  // namespace

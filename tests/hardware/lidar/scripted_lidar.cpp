@@ -110,6 +110,10 @@ void ScriptedLidar::answer(const std::string& request, const Descriptor& peer) {
                                 {"SCAN", std::to_string(60000 / script_.scan_period_ms)}}));
   } else if (request == "II") {
     send(peer, key_reply("II", {{"STAT", "sensor is working normally"}}));
+  } else if (request == "RS") {
+    send(peer, reply("RS", "00"));
+  } else if (request == "RB") {
+    send(peer, reply("RB", reboots_++ % 2 == 0 ? "01" : "00"));
   } else if (request == "BM") {
     laser_is_on_ = true;
     send(peer, reply("BM", "00"));

@@ -71,6 +71,7 @@ class ScriptedLidar {
   bool laser_is_on_ = false;
   bool is_broken_ = false;  // the connection has failed, or was closed by the script
   int quits_ = 0;
+  int reboots_ = 0;
   int scans_ = 0;  // of this connection
   Instant next_scan_;
   std::string held_back_;  // to be glued to what comes next
