@@ -187,8 +187,12 @@ void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
   }
 }
 
-std::string bound(float height_m) {
-  return std::isinf(height_m) ? "open" : in_words(static_cast<double>(height_m), 2) + " m";
+std::string heights_in_words(const HeightBand& band) {
+  const auto metres = [](float m) { return in_words(static_cast<double>(m), 2) + " m"; };
+  const bool floor = !std::isinf(band.lowest_m), ceiling = !std::isinf(band.highest_m);
+  if (floor && ceiling) return metres(band.lowest_m) + " to " + metres(band.highest_m);
+  if (floor) return "above " + metres(band.lowest_m);
+  return ceiling ? "below " + metres(band.highest_m) : "all";
 }
 
 void draw_caption(Sheet& sheet, const OrganisedCloud& cloud, const HeightBand& band,
@@ -201,9 +205,8 @@ void draw_caption(Sheet& sheet, const OrganisedCloud& cloud, const HeightBand& b
   if (caption.mode != 0) sweep += "   mode " + std::to_string(caption.mode);
   sweep += "   " + std::to_string(cloud.lines) + " lines of " + std::to_string(cloud.beams) +
            " beams   " + std::to_string(points) + " points   verdict: " + caption.verdict;
-  const std::string heights = "seen from above, metres; heights from " + bound(band.lowest_m) +
-                              " to " + bound(band.highest_m) + ": " + std::to_string(shown) +
-                              " points shown";
+  const std::string heights = "seen from above, metres; heights " + heights_in_words(band) + ": " +
+                              std::to_string(shown) + " points shown";
   std::string turn = "swivel " SWIVEL_VERSION;
   if (caption.phi_offset_rad) {
     turn += "   phi_offset " + in_words(deg_from_rad(*caption.phi_offset_rad), 3) + " deg" +

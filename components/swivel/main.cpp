@@ -1,0 +1,14 @@
+// swivel: the command line tool. Data goes to stdout, logs to stderr.
+#include "components/common/program.hpp"
+#include "components/swivel/verbs.hpp"
+
+int main(int argc, char** argv) {
+  using namespace swivel;
+  CLI::App app("Swivel: an accurate 3D scanner from a 2D lidar on an open-loop stepper", "swivel");
+  app.set_version_flag("--version", "swivel " SWIVEL_VERSION);
+  app.require_subcommand(1);
+  Verb verb;
+  add_process(app, verb);
+  add_calibrate(app, verb);
+  return run_program(app, argc, argv, [&] { return verb(); });
+}
