@@ -1,7 +1,6 @@
 #include "components/alpha_calibrator/alpha_calibration.hpp"
 
-#include <array>
-#include <cstdio>
+#include <fmt/core.h>
 
 #include "components/common/calibration_file.hpp"
 #include "components/common/strict_yaml.hpp"
@@ -11,12 +10,6 @@ namespace {
 
 // The four walls of the room and some large upright furniture; the fit tells them apart.
 constexpr std::size_t kWallsLookedFor = 8;
-
-std::string in_words(const char* format, double value, double sigma) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, value, sigma);
-  return text.data();
-}
 
 }  // namespace
 
@@ -46,8 +39,8 @@ AlphaCalibration::Added AlphaCalibration::add(const msg::Attitude& attitude,
     estimator_ = attitude.estimator();
   }
   sweeps_.push_back(std::move(sweep));
-  return {true, in_words("beta %.3f +- %.3f deg", attitude.beta_deg(), attitude.beta_sigma_deg()) +
-                    ", " + std::to_string(walls) + " upright planes"};
+  return {true, fmt::format("beta {:.3f} +- {:.3f} deg, {} upright planes", attitude.beta_deg(),
+                            attitude.beta_sigma_deg(), walls)};
 }
 
 AlphaCalibration::Outcome AlphaCalibration::fit(const LidarName& lidar,
@@ -55,10 +48,10 @@ AlphaCalibration::Outcome AlphaCalibration::fit(const LidarName& lidar,
   const AlphaResult result = fit_alpha(sweeps_, options_);
   if (!result.fit) return {std::nullopt, result.reason};
   const AlphaFit& fit = *result.fit;
-  return {
-      to_message(fit, lidar, time_ns),
-      in_words("alpha %.4f +- %.4f deg", deg_from_rad(fit.alpha_rad), deg_from_rad(fit.sigma_rad)) +
-          " from " + std::to_string(fit.sweeps_used) + " sweeps of mode " + std::to_string(mode_)};
+  return {to_message(fit, lidar, time_ns),
+          fmt::format("alpha {:.4f} +- {:.4f} deg from {} sweeps of mode {}",
+                      deg_from_rad(fit.alpha_rad), deg_from_rad(fit.sigma_rad), fit.sweeps_used,
+                      mode_)};
 }
 
 msg::Calibration AlphaCalibration::to_message(const AlphaFit& fit, const LidarName& lidar,
@@ -74,9 +67,8 @@ msg::Calibration AlphaCalibration::to_message(const AlphaFit& fit, const LidarNa
   calibration.mode(static_cast<std::uint8_t>(mode_));
   calibration.serial_number(lidar.serial_number);
   calibration.firmware(lidar.firmware);
-  calibration.provenance("four walls, estimator " + estimator_ + ", " +
-                         std::to_string(fit.sweeps_used) + " sweeps of mode " +
-                         std::to_string(mode_));
+  calibration.provenance(fmt::format("four walls, estimator {}, {} sweeps of mode {}", estimator_,
+                                     fit.sweeps_used, mode_));
   return calibration;
 }
 

@@ -8,6 +8,7 @@
 #include "components/common/calibration_file.hpp"
 #include "components/common/health_reporter.hpp"
 #include "components/common/program.hpp"
+#include "components/common/strict_yaml.hpp"
 
 namespace {
 

@@ -21,8 +21,8 @@ std::string read_rig_name(YamlSection& file) {
   return name;
 }
 
-LidarSettings read_lidar(YamlSection section) {
-  LidarSettings lidar;
+LidarSection read_lidar(YamlSection section) {
+  LidarSection lidar;
   lidar.address = section.text("address");
   lidar.intensities = section.flag("intensities", true);
   if (section.has("stamp_origin")) {
@@ -33,8 +33,8 @@ LidarSettings read_lidar(YamlSection section) {
   return lidar;
 }
 
-StepperSettings read_stepper(YamlSection section) {
-  StepperSettings stepper;
+StepperSection read_stepper(YamlSection section) {
+  StepperSection stepper;
   stepper.address = section.text("address");
   stepper.home_angle_deg = section.number("home_angle_deg", kAngle);
   stepper.cable_limit_deg = section.number("cable_limit_deg", {1.0, 3600.0});
@@ -87,8 +87,8 @@ PlateGeometry read_plate(YamlSection section) {
   return plate;
 }
 
-ModeSettings read_modes(YamlSection section) {
-  ModeSettings modes;
+ModesSection read_modes(YamlSection section) {
+  ModesSection modes;
   modes.sweep_angle_deg = section.number("sweep_angle_deg", {1.0, 360.0});
   YamlSection lines = section.section("lines");
   for (const std::string& key : lines.keys()) {

@@ -10,13 +10,13 @@
 
 namespace swivel {
 
-struct LidarSettings {
+struct LidarSection {
   std::string address;
   bool intensities = true;
   bool stamp_at_rear_centre = true;
 };
 
-struct StepperSettings {
+struct StepperSection {
   std::string address;
   double home_angle_deg = 0.0;
   double cable_limit_deg = 0.0;
@@ -25,7 +25,7 @@ struct StepperSettings {
   double minimum_step_rate_hz = 0.0;
 };
 
-struct ModeSettings {
+struct ModesSection {
   double sweep_angle_deg = 180.0;
   std::map<int, int> lines;  // mode -> scan lines of a sweep
 };
@@ -38,14 +38,14 @@ enum class Timing {
 struct RigFile {
   std::string path;
   std::string rig;
-  std::optional<LidarSettings> lidar;      // absent: recordings only
-  std::optional<StepperSettings> stepper;  // absent: the axis is turned by something else
+  std::optional<LidarSection> lidar;      // absent: recordings only
+  std::optional<StepperSection> stepper;  // absent: the axis is turned by something else
   bool axis_measured = false;
   RigGeometry geometry;
   std::optional<PlateGeometry> plate;
   Timing timing = Timing::kPerBeam;
   std::string estimator;
-  ModeSettings modes;
+  ModesSection modes;
 };
 
 // Throws ConfigurationError with file and line.

@@ -30,7 +30,7 @@ msg::ScanLine to_message(const LidarScan& scan) {
   return line;
 }
 
-ScipClientOptions client_options(const LidarSettings& lidar) {
+ScipClientOptions client_options(const LidarSection& lidar) {
   ScipClientOptions options;
   options.address = lidar.address;
   options.intensities = lidar.intensities;
@@ -84,16 +84,16 @@ void name_lidar(const std::optional<LidarIdentity>& lidar, HealthReporter& healt
   health.set_fact("firmware", lidar->firmware);
 }
 
-LidarSettings lidar_of(const RigFile& rig, const std::string& address) {
+LidarSection lidar_of(const RigFile& rig, const std::string& address) {
   if (!rig.lidar) throw ConfigurationError(rig.path + ": has no 'lidar' section to read from");
-  LidarSettings lidar = *rig.lidar;
+  LidarSection lidar = *rig.lidar;
   if (!address.empty()) lidar.address = address;
   return lidar;
 }
 
 int read(const CommonOptions& options, const std::string& address, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
-  const LidarSettings lidar = lidar_of(rig, address);
+  const LidarSection lidar = lidar_of(rig, address);
   Participant participant(options.participant("hokuyo_reader", rig.rig));
   HealthReporter health(participant);
   Writer<msg::ScanLine> lines(participant, kScanLineTopic);

@@ -8,7 +8,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 msg::AxisSample sample_at(std::int64_t time_ns, double angle_deg) {
   msg::AxisSample sample;
@@ -19,8 +19,9 @@ msg::AxisSample sample_at(std::int64_t time_ns, double angle_deg) {
 
 }  // namespace
 
-Announcer::Announcer(std::string rig, SequencerOutputs outputs) : outputs_(std::move(outputs)) {
-  now_.rig(std::move(rig));
+Announcer::Announcer(const std::string& rig, SequencerOutputs outputs)
+    : outputs_(std::move(outputs)) {
+  now_.rig(rig);
   now_.phase(msg::PHASE_IDLE);
 }
 
@@ -37,7 +38,7 @@ void Announcer::begin_request(const msg::SweepRequest& request, const SweepPlan&
 
 void Announcer::begin_sweep(std::uint16_t sweeps_left) {
   const std::lock_guard lock(mutex_);
-  const auto seconds = static_cast<std::uint64_t>(now_ns() / kSecond_ns);
+  const auto seconds = static_cast<std::uint64_t>(now_ns() / kNsPerSecond);
   last_sweep_id_ = std::max(last_sweep_id_ + 1, seconds);
   now_.sweep_id(last_sweep_id_);
   now_.sweeps_left(sweeps_left);

@@ -30,7 +30,7 @@ struct LineWindow {
 
 class Announcer {
  public:
-  Announcer(std::string rig, SequencerOutputs outputs);
+  Announcer(const std::string& rig, SequencerOutputs outputs);
 
   // What is said from now on belongs to this request, and to no sweep yet.
   void begin_request(const msg::SweepRequest& request, const SweepPlan& plan);

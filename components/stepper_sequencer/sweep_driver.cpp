@@ -10,10 +10,10 @@
 namespace swivel {
 namespace {
 
-constexpr std::int64_t kArrivalPoll_ns = 20'000'000;
+constexpr std::int64_t kArrivalPollNs = 20'000'000;
 // From the controller's ok to its first step, at most; it is Idle until then.
-constexpr std::int64_t kStartGrace_ns = 250'000'000;
-constexpr double kOverdue_s = 2.0;
+constexpr std::int64_t kStartGraceNs = 250'000'000;
+constexpr double kOverdueS = 2.0;
 
 std::int64_t after(std::int64_t time_ns, double seconds) {
   return time_ns + std::llround(seconds * 1e9);
@@ -104,12 +104,12 @@ Outcome SweepDriver::sweep_improved(const SweepPlan& plan) {
 Outcome SweepDriver::confirm_window(const SweepPlan& plan, const Turn& turn,
                                     const LineWindow& window) {
   const std::int64_t interval_ns = std::clamp<std::int64_t>(after(0, options_.settle_s / 4.0),
-                                                            kArrivalPoll_ns, poll_interval_ns_);
+                                                            kArrivalPollNs, poll_interval_ns_);
   for (;;) {
     const Result<StepperStatus> status = look();
     if (!status) return Failure{status.reason()};
     if (proves(plan, *status, window)) return Done{};
-    const bool should_turn = status->asked_ns > turn.accepted_ns + kStartGrace_ns;
+    const bool should_turn = status->asked_ns > turn.accepted_ns + kStartGraceNs;
     if (should_turn && status->state != GrblState::kJog)
       return Failure{"the turn ended early: " + what_it_does(*status)};
     if (status->asked_ns > window.end_ns)
@@ -174,16 +174,16 @@ Outcome SweepDriver::stand_for_line(const SweepPlan& plan, std::uint32_t line) {
 Outcome SweepDriver::arrive(const Turn& turn, double speed_deg_s) {
   const double run_up_s = speed_deg_s / stepper_.settings().acceleration_deg_s2;
   const double longest_s = std::abs(turn.end_angle_deg - angle_deg_) / speed_deg_s + run_up_s;
-  const std::int64_t overdue_ns = after(now_ns(), longest_s + kOverdue_s);
+  const std::int64_t overdue_ns = after(now_ns(), longest_s + kOverdueS);
   for (;;) {
     const Result<StepperStatus> status = look();
     if (!status) return Failure{status.reason()};
     const bool idle = status->state == GrblState::kIdle;
     if (idle && is_there(*status, turn.end_angle_deg)) return Done{};
-    if (idle && status->asked_ns > turn.accepted_ns + kStartGrace_ns)
+    if (idle && status->asked_ns > turn.accepted_ns + kStartGraceNs)
       return Failure{"the turn ended early: " + what_it_does(*status)};
     if (now_ns() > overdue_ns) return Failure{"the turn does not end: " + what_it_does(*status)};
-    Outcome paused = pause_until(now_ns() + kArrivalPoll_ns);
+    Outcome paused = pause_until(now_ns() + kArrivalPollNs);
     if (!paused) return paused;
   }
 }

@@ -7,7 +7,7 @@ namespace {
 
 // For the message that announces a window, and for rounding: a window of one line is not a
 // fixed number of periods.
-constexpr double kLineMargin_s = 0.005;
+constexpr double kLineMarginS = 0.005;
 
 struct Rig {
   const SweepOptions& sweep;
@@ -48,7 +48,7 @@ void plan_naive(const Rig& rig, SweepPlan& plan) {
 // It starts one step early, so that every line is come to from the same side.
 void plan_stop_and_go(const Rig& rig, SweepPlan& plan) {
   const double gamma_deg = rig.sweep.sweep_angle_deg / plan.lines;
-  plan.window_s = 2.0 * rig.longest_period_s() + kLineMargin_s;
+  plan.window_s = 2.0 * rig.longest_period_s() + kLineMarginS;
   plan.start_angle_deg = rig.whole_steps(-gamma_deg);
   for (std::uint32_t line = 0; line < plan.lines; ++line)
     plan.line_angles_deg.push_back(rig.whole_steps(line * gamma_deg));

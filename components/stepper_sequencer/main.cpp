@@ -1,0 +1,115 @@
+// stepper_sequencer: homes the shaft and, for each request, turns it through a sweep and back.
+// Says when the speed is constant, and the axis angle over time.
+#include <spdlog/spdlog.h>
+
+#include "components/common/health_reporter.hpp"
+#include "components/common/program.hpp"
+#include "components/common/rig_file.hpp"
+#include "components/common/strict_yaml.hpp"
+#include "components/stepper_sequencer/sequencer.hpp"
+
+namespace {
+
+using namespace swivel;
+
+SequencerOptions sequencer_options(const RigFile& rig, const std::string& address) {
+  if (!rig.stepper) throw ConfigurationError(rig.path + ": has no 'stepper' section to turn");
+  SequencerOptions options;
+  options.rig = rig.rig;
+  options.stepper.address = address.empty() ? rig.stepper->address : address;
+  options.stepper.limits.home_angle_deg = rig.stepper->home_angle_deg;
+  options.stepper.limits.cable_limit_deg = rig.stepper->cable_limit_deg;
+  options.stepper.limits.minimum_step_rate_hz = rig.stepper->minimum_step_rate_hz;
+  options.sweep.sweep_angle_deg = rig.modes.sweep_angle_deg;
+  options.sweep.lines_of_mode.clear();
+  for (const auto& [mode, lines] : rig.modes.lines) {
+    options.sweep.lines_of_mode[mode] = static_cast<std::uint32_t>(lines);
+  }
+  options.sweep.settle_s = rig.stepper->settle_s;
+  options.sweep.return_speed_deg_s = rig.stepper->return_speed_deg_s;
+  return options;
+}
+
+const char* phase_word(msg::SweepPhase phase) {
+  switch (phase) {
+    case msg::PHASE_IDLE:
+      return "idle";
+    case msg::PHASE_HOMING:
+      return "homing";
+    case msg::PHASE_ACCELERATING:
+      return "accelerating";
+    case msg::PHASE_CRUISING:
+      return "cruising";
+    case msg::PHASE_DECELERATING:
+      return "decelerating";
+    case msg::PHASE_RETURNING:
+      return "returning";
+    case msg::PHASE_FAULT:
+      return "fault";
+    case msg::PHASE_REFUSED:
+      return "refused";
+    case msg::PHASE_ASSEMBLED:
+      return "assembled";
+  }
+  return "unknown";
+}
+
+void tell(const msg::Sweep& sweep, HealthReporter& health) {
+  const std::string reason = sweep.reason().empty() ? "" : ": " + sweep.reason();
+  if (sweep.phase() == msg::PHASE_FAULT) {
+    health.error("motor fault" + reason);
+  } else if (sweep.phase() == msg::PHASE_REFUSED) {
+    spdlog::warn("request refused{}", reason);
+  } else if (sweep.window_first_line() == 0) {  // stop_and_go cruises once a line
+    spdlog::info("{}{}", phase_word(sweep.phase()), reason);
+  }
+}
+
+void report(const Sequencer& sequencer, HealthReporter& health) {
+  const SequencerHealth now = sequencer.health();
+  health.set_counter("sweeps_done", now.sweeps_done);
+  health.set_counter("requests_refused", now.requests_refused);
+  health.set_counter("faults", now.faults);
+  health.set_counter("garbage_lines", now.garbage_lines);
+  health.set_state(now.ready ? msg::HEALTH_OK : msg::HEALTH_WAITING, now.doing);
+}
+
+int sequence(const CommonOptions& options, const std::string& address, StopSignal& stop) {
+  const RigFile rig = load_rig_file(options.rig_file);
+  const SequencerOptions sequencer_settings = sequencer_options(rig, address);
+  Participant participant(options.participant("stepper_sequencer", rig.rig));
+  HealthReporter health(participant);
+  Writer<msg::Sweep> sweeps(participant, kSweepTopic);
+  Writer<msg::Axis> axis(participant, kAxisTopic);
+  Sequencer sequencer(sequencer_settings,
+                      {[&](const msg::Sweep& sweep) {
+                         tell(sweep, health);
+                         sweeps.write(msg::Sweep(sweep));
+                       },
+                       [&](const msg::Axis& samples) { axis.write(msg::Axis(samples)); }});
+  participant.subscribe<msg::SweepRequest>(
+      kSweepRequestTopic, [&](const auto& request) { sequencer.request(request); });
+  participant.on_tick(std::chrono::milliseconds(200), [&] { report(sequencer, health); });
+  participant.start();
+  sequencer.start();
+  while (!stop.wait_for(std::chrono::hours(1))) {
+  }
+  sequencer.stop();  // first of all
+  participant.stop();
+  return kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  StopSignal stop;
+  CLI::App app("Turns the lidar through sweeps", "stepper_sequencer");
+  CommonOptions options;
+  std::string address;
+  add_common_options(app, options);
+  app.add_option("--stepper", address, "/dev/NAME[@BAUD] or tcp://HOST:PORT, instead of the rig's");
+  return run_program(app, argc, argv, [&] {
+    start_log("stepper_sequencer", options.log_level);
+    return sequence(options, address, stop);
+  });
+}
