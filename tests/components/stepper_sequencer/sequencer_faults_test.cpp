@@ -16,7 +16,7 @@ using test::SequencerRig;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
+constexpr std::int64_t kNsPerMillisecond = 1'000'000;
 
 struct TroubleCase {
   const char* name;
@@ -42,7 +42,7 @@ TEST_P(MidSweep, IsAFaultThatStopsTheMotorAndIsRecoveredFrom) {
   EXPECT_THAT(fault->reason(), HasSubstr(trouble.reason));
   EXPECT_EQ(fault->request_id(), request_id);
   EXPECT_EQ(fault->sweep_id(), cruising->sweep_id());
-  EXPECT_LT(fault->time_ns() - happened_ns, trouble.seen_within_ms * kMillisecond_ns);
+  EXPECT_LT(fault->time_ns() - happened_ns, trouble.seen_within_ms * kNsPerMillisecond);
   ASSERT_TRUE(rig.await(msg::PHASE_IDLE, 2));
   EXPECT_FALSE(rig.peer.turning());
   EXPECT_EQ(rig.peer.homings(), 2);

@@ -22,7 +22,7 @@ SequencerOptions quick_options(const GrblDouble& peer) {
   options.stepper.status_timeout = 200ms;
   options.sweep.sweep_angle_deg = 4.5;
   options.sweep.lines_of_mode = {{1, 1}, {2, 2}, {3, 4}, {4, 5}, {5, 8}, {6, 10}, {7, 16}};
-  options.sweep.return_speed_deg_s = 400.0;
+  options.sweep.return_speed_deg_s = 900.0;
   options.sweep.stand_s = 0.01;
   options.watch_interval_s = 0.05;
   options.shortest_retry_s = 0.01;

@@ -19,6 +19,7 @@ using ::testing::HasSubstr;
 
 std::vector<msg::SweepPhase> phases_of(const std::vector<msg::Sweep>& sweeps) {
   std::vector<msg::SweepPhase> phases;
+  phases.reserve(sweeps.size());
   for (const msg::Sweep& sweep : sweeps) phases.push_back(sweep.phase());
   return phases;
 }

@@ -36,7 +36,7 @@ struct IdealTurn {
 
 struct GrblDoubleOptions {
   std::map<int, double> settings = {{1, 255},   {13, 0},      {20, 1},     {22, 1},   {27, 1},
-                                    {100, 100}, {110, 60000}, {120, 4000}, {130, 360}};
+                                    {100, 100}, {110, 60000}, {120, 8000}, {130, 360}};
   double banner_delay_s = 0.0;  // after the pty is first read or 0x18
   bool banner_at_start = true;  // as an Arduino does when its port is opened
   bool answers_reset = true;
