@@ -126,8 +126,6 @@ std::string DeviceClock::jump(std::uint32_t stamp_ms, std::int64_t arrival_ns) c
   const double late_ns = static_cast<double>(arrival_ns - *computer_origin_ns_) - expected_ns;
   if (late_ns > kLatestArrivalNs)
     return "a line came seconds late: the computer's clock was set forward";
-  if (quality_.steady && late_ns < -kSmallestJumpNs)
-    return "a line came before it was due: the computer's clock was set back";
   return {};
 }
 
