@@ -31,8 +31,7 @@ double expected_azimuth_rad(std::size_t wall, const AlphaOptions& options) {
   return options.room_yaw_rad + static_cast<double>(wall) * kPi / 2 + kPi;
 }
 
-// How far a wall of O' is off its place in O when the plate stands at alpha; eq. (9) for small
-// angles.
+// Eq. (9): how far a wall of O' is off its place in O when the plate stands at alpha.
 double wall_error_rad(const Plane& plane, std::size_t wall, double beta_rad, double alpha_rad,
                       const AlphaOptions& options) {
   return turned(plane.azimuth_rad() + alpha_rad - beta_rad - expected_azimuth_rad(wall, options));
@@ -101,6 +100,7 @@ SweepAlpha alpha_of(const AlphaSweep& sweep, const FourWalls& sides, const Alpha
 // by more, it must not take them for that.
 AlphaOptions widened(const AlphaOptions& options, const std::vector<SweepAlpha>& alphas) {
   std::vector<double> values;
+  values.reserve(alphas.size());
   for (const SweepAlpha& alpha : alphas) values.push_back(alpha.alpha_rad);
   const double middle_rad = median(values);
   for (double& value : values) value = std::abs(value - middle_rad);

@@ -58,7 +58,7 @@ std::optional<AxisSegment> AxisTrack::segment_over(std::int64_t start_ns,
   const auto stop = first_at_or_after(end_ns);
   for (auto sample = first_at_or_after(start_ns); sample != stop; ++sample) {
     const double straight_rad = between(start, end, sample->time_ns);
-    if (!(std::abs(sample->angle_rad - straight_rad) <= kStraight_rad)) return std::nullopt;
+    if (!(std::abs(sample->angle_rad - straight_rad) <= kStraightRad)) return std::nullopt;
   }
   const double duration_s = s_from_ns(elapsed_ns(start_ns, end_ns));
   return AxisSegment{*start_rad, (*end_rad - *start_rad) / duration_s};

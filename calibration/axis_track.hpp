@@ -32,7 +32,7 @@ class AxisTrack {
   bool covers(std::int64_t start_ns, std::int64_t end_ns) const;
 
   // The stretch [start_ns, end_ns], when the track covers it and no sample inside it is further
-  // than kStraight_rad from the line between its ends; else none.
+  // than kStraightRad from the line between its ends; else none.
   std::optional<AxisSegment> segment_over(std::int64_t start_ns, std::int64_t end_ns) const;
 
   // Forgets what angles at time_ns and later do not need.
@@ -41,7 +41,7 @@ class AxisTrack {
   std::size_t size() const { return samples_.size(); }
 
   // 0.3 micrometres at 30 m.
-  static constexpr double kStraight_rad = 1e-8;
+  static constexpr double kStraightRad = 1e-8;
 
  private:
   using Samples = std::deque<AxisSample>;

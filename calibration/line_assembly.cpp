@@ -11,8 +11,8 @@ namespace swivel {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLongestRange_m = 65.535;
-constexpr double kAllowedShift_m = 1e-7;
+constexpr double kLongestRangeM = 65.535;
+constexpr double kAllowedShiftM = 1e-7;
 
 Eigen::Matrix3d rotation_z(double angle_rad) {
   return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -34,7 +34,7 @@ void read_ranges(const LineReadings& readings, std::size_t count, double* ranges
 
 LineAssembler::LineAssembler(const ForwardModel& model)
     : model_(model),
-      tolerance_rad_(kAllowedShift_m / (kLongestRange_m * static_cast<double>(model.beam_count()))),
+      tolerance_rad_(kAllowedShiftM / (kLongestRangeM * static_cast<double>(model.beam_count()))),
       angle_per_beam_rad_(kNaN),
       directions_(3, model.beam_count()),
       lever_arms_m_(3, model.beam_count()),
@@ -84,7 +84,6 @@ void LineAssembler::read_line(const LineReadings& readings) {
 }
 
 void LineAssembler::project(const Eigen::Matrix3d& R_base_turned, CloudPoint* row) const {
-  const Eigen::Matrix3d turn = R_base_turned;
   const Eigen::Vector3d origin_m = model_.rig().T_base_axis.translation();
   const double* const range_m = ranges_m_.data();
   const Eigen::Index beams = directions_.cols();
@@ -92,12 +91,12 @@ void LineAssembler::project(const Eigen::Matrix3d& R_base_turned, CloudPoint* ro
     const double x = range_m[beam] * directions_(0, beam) + lever_arms_m_(0, beam);
     const double y = range_m[beam] * directions_(1, beam) + lever_arms_m_(1, beam);
     const double z = range_m[beam] * directions_(2, beam) + lever_arms_m_(2, beam);
-    row[beam].x_m =
-        static_cast<float>(turn(0, 0) * x + turn(0, 1) * y + turn(0, 2) * z + origin_m.x());
-    row[beam].y_m =
-        static_cast<float>(turn(1, 0) * x + turn(1, 1) * y + turn(1, 2) * z + origin_m.y());
-    row[beam].z_m =
-        static_cast<float>(turn(2, 0) * x + turn(2, 1) * y + turn(2, 2) * z + origin_m.z());
+    row[beam].x_m = static_cast<float>(R_base_turned(0, 0) * x + R_base_turned(0, 1) * y +
+                                       R_base_turned(0, 2) * z + origin_m.x());
+    row[beam].y_m = static_cast<float>(R_base_turned(1, 0) * x + R_base_turned(1, 1) * y +
+                                       R_base_turned(1, 2) * z + origin_m.y());
+    row[beam].z_m = static_cast<float>(R_base_turned(2, 0) * x + R_base_turned(2, 1) * y +
+                                       R_base_turned(2, 2) * z + origin_m.z());
     row[beam].intensity = intensities_[static_cast<std::size_t>(beam)];
   }
 }

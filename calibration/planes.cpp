@@ -19,9 +19,9 @@ using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr int kRansacRounds = 400;
 constexpr int kRefinements = 4;
-constexpr double kKeptSigmas = 3.0;     // of the points that a plane is fitted to
-constexpr double kSharedStrip_m = 0.1;  // about another plane, where points could be either's
-constexpr double kThickest = 0.9;       // rms over band: evenly filled space has more
+constexpr double kKeptSigmas = 3.0;    // of the points that a plane is fitted to
+constexpr double kSharedStripM = 0.1;  // about another plane, where points could be either's
+constexpr double kThickest = 0.9;      // rms over band: evenly filled space has more
 constexpr std::size_t kLeastPoints = 50;
 constexpr std::size_t kOtherPlanes = 6;  // floor, roof, tables: looked for besides the walls
 
@@ -69,7 +69,7 @@ std::optional<Plane> segment(const PclCloud::Ptr& cloud, double band_m) {
   consensus.getModelCoefficients(found);
   consensus.getInliers(inliers);
   if (found.size() < 4 || inliers.size() < kLeastPoints) return std::nullopt;
-  Plane plane = facing_origin(found.head<3>().cast<double>(), double{found[3]});
+  Plane plane = facing_origin(found.head<3>().cast<double>(), static_cast<double>(found[3]));
   plane.points = inliers.size();
   return plane;
 }
@@ -102,7 +102,7 @@ struct Moments {
 
 bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen::Vector3f& point) {
   for (std::size_t other = 0; other < planes.size(); ++other) {
-    if (other != own && std::abs(height_over(planes[other], point)) < kSharedStrip_m) return true;
+    if (other != own && std::abs(height_over(planes[other], point)) < kSharedStripM) return true;
   }
   return false;
 }

@@ -12,15 +12,15 @@ namespace {
 
 // Beams nearer to the outline than this say neither inside nor outside: the spot is 4 mm, the
 // lines of the fastest mode lie 6 mm apart.
-constexpr double kInsideMargin_m = 0.004;
-constexpr double kOutsideMargin_m = 0.006;
+constexpr double kInsideMarginM = 0.004;
+constexpr double kOutsideMarginM = 0.006;
 
-constexpr double kSearch_rad = rad_from_deg(30.0);
-constexpr double kSearchStep_rad = rad_from_deg(0.5);
+constexpr double kSearchRad = rad_from_deg(30.0);
+constexpr double kSearchStepRad = rad_from_deg(0.5);
 constexpr double kFitShare = 0.3;  // of beams in the ring, between plate and no plate
-constexpr double kFitDepth_m = 0.010;
-constexpr std::size_t kFitBeams = 10'000;                    // more than these only take time
-constexpr double kSectorHalfWidth_rad = rad_from_deg(44.0);  // the corners lie at 45.6 deg
+constexpr double kFitDepthM = 0.010;
+constexpr std::size_t kFitBeams = 10'000;                   // more than these only take time
+constexpr double kSectorHalfWidthRad = rad_from_deg(44.0);  // the corners lie at 45.6 deg
 
 // Of the beams on the plate, how many must have measured in the ring. At a range noise of
 // 13 mm it is 0.65, at 30 mm 0.25; a surface 40 mm below the plate gives 0.05.
@@ -80,11 +80,13 @@ class CellGrid {
 // stands across from the beam by the lever arm's x, and along it by its y.
 std::optional<Eigen::Vector3d> lidar_centre(const CloudPoint& point,
                                             const Eigen::Vector3d& lever_arm_m) {
-  const double radius_m = std::hypot(double{point.x_m}, double{point.y_m});
+  const double radius_m =
+      std::hypot(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
   if (radius_m <= std::abs(lever_arm_m.x())) return std::nullopt;
   const double along_m = -std::sqrt(radius_m * radius_m - lever_arm_m.x() * lever_arm_m.x());
   const double turned_rad =
-      std::atan2(double{point.y_m}, double{point.x_m}) - std::atan2(along_m, lever_arm_m.x());
+      std::atan2(static_cast<double>(point.y_m), static_cast<double>(point.x_m)) -
+      std::atan2(along_m, lever_arm_m.x());
   return Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * lever_arm_m;
 }
 
@@ -94,9 +96,10 @@ bool passes_over(const CloudPoint& point, const PlateGeometry& plate,
                  const Eigen::Vector3d& lever_arm_m) {
   const double reach_m = lever_arm_m.head<2>().norm();
   const double level_m =
-      std::sqrt(double{point.x_m} * double{point.x_m} + double{point.y_m} * double{point.y_m}) -
+      std::sqrt(static_cast<double>(point.x_m) * static_cast<double>(point.x_m) +
+                static_cast<double>(point.y_m) * static_cast<double>(point.y_m)) -
       reach_m;
-  const double down_m = lever_arm_m.z() - double{point.z_m};
+  const double down_m = lever_arm_m.z() - static_cast<double>(point.z_m);
   return level_m * plate.depth_m > (plate.ring_outer_m + reach_m) * down_m;
 }
 
@@ -106,7 +109,8 @@ std::optional<PlateBeam> beam_at_plate(const CloudPoint& point, const PlateGeome
   if (passes_over(point, plate, lever_arm_m)) return std::nullopt;
   const auto centre = lidar_centre(point, lever_arm_m);
   if (!centre) return std::nullopt;
-  const Eigen::Vector3d along = Eigen::Vector3d(point.x_m, point.y_m, point.z_m) - *centre;
+  const Eigen::Vector3d along =
+      Eigen::Vector3f(point.x_m, point.y_m, point.z_m).cast<double>() - *centre;
   if (along.z() >= -0.2 * along.norm()) return std::nullopt;
   const Eigen::Vector3d met = *centre + along * (-plate.depth_m / along.z());
   const double radius_m = std::hypot(met.x(), met.y());
@@ -121,7 +125,7 @@ Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, 
   const PlateOutline outline(plate, beta_rad);
   Tally tally;
   for (const PlateBeam& beam : beams) {
-    if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMargin_m) {
+    if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMarginM) {
       tally.add(beam.in_ring);
     }
   }
@@ -129,7 +133,7 @@ Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, 
 }
 
 // How well the outline fits there: hits should lie inside and misses outside, and the more so
-// the further from it, up to kFitDepth_m.
+// the further from it, up to kFitDepthM.
 double outline_score(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
                      double beta_rad, std::size_t stride) {
   const PlateOutline outline(plate, beta_rad);
@@ -138,7 +142,7 @@ double outline_score(const PlateGeometry& plate, const std::vector<PlateBeam>& b
     const PlateBeam& beam = beams[index];
     const double inside_m = outline.inside_m(beam.x_m, beam.y_m);
     const double weight = beam.in_ring ? 1.0 - kFitShare : -kFitShare;
-    score += weight * std::clamp(inside_m, -kFitDepth_m, kFitDepth_m);
+    score += weight * std::clamp(inside_m, -kFitDepthM, kFitDepthM);
   }
   return score;
 }
@@ -148,9 +152,9 @@ double fit_outline(const PlateGeometry& plate, const std::vector<PlateBeam>& bea
   const std::size_t stride = 1 + beams.size() / kFitBeams;
   double best_rad = beta_rad;
   double best_score = outline_score(plate, beams, beta_rad, stride);
-  const auto steps = static_cast<int>(kSearch_rad / kSearchStep_rad);
+  const auto steps = static_cast<int>(kSearchRad / kSearchStepRad);
   for (int step = -steps; step <= steps; ++step) {
-    const double shifted_rad = beta_rad + step * kSearchStep_rad;
+    const double shifted_rad = beta_rad + step * kSearchStepRad;
     const double score = outline_score(plate, beams, shifted_rad, stride);
     if (score > best_score) {
       best_score = score;
@@ -203,8 +207,8 @@ std::size_t usual_beams(const LineAzimuths& azimuths) {
 // Lines that should have crossed the plate and said little or nothing there.
 std::string missing_lines(const LineAzimuths& azimuths, double beta_rad) {
   if (!(std::abs(azimuths.step_rad) > 0.0)) return "all lines of the sweep lie on one another";
-  const double one = (beta_rad - kSectorHalfWidth_rad - azimuths.first_rad) / azimuths.step_rad;
-  const double other = (beta_rad + kSectorHalfWidth_rad - azimuths.first_rad) / azimuths.step_rad;
+  const double one = (beta_rad - kSectorHalfWidthRad - azimuths.first_rad) / azimuths.step_rad;
+  const double other = (beta_rad + kSectorHalfWidthRad - azimuths.first_rad) / azimuths.step_rad;
   const double first = std::ceil(std::min(one, other));
   const double last = std::floor(std::max(one, other));
   if (first < 0.0 || last > static_cast<double>(azimuths.beams.size()) - 1.0) {
@@ -227,7 +231,7 @@ std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>
   const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
   for (const PlateBeam& beam : beams) {
-    if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMargin_m) {
+    if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMarginM) {
       grid.cell_of(beam).add(beam.in_ring);
     }
   }
@@ -255,7 +259,7 @@ std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBe
   const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
   for (const PlateBeam& beam : beams) {
-    if (outline.inside_m(beam.x_m, beam.y_m) < -kOutsideMargin_m) {
+    if (outline.inside_m(beam.x_m, beam.y_m) < -kOutsideMarginM) {
       grid.cell_of(beam).add(beam.in_ring);
     }
   }
@@ -273,8 +277,10 @@ std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBe
 }  // namespace
 
 bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m) {
-  if (!(std::abs(double{point.z_m} - height_m) <= plate.ring_thickness_m / 2)) return false;
-  const double radius_m = std::hypot(double{point.x_m}, double{point.y_m});
+  if (!(std::abs(static_cast<double>(point.z_m) - height_m) <= plate.ring_thickness_m / 2))
+    return false;
+  const double radius_m =
+      std::hypot(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
   return point.x_m > 0.0F && radius_m >= plate.ring_inner_m && radius_m <= plate.ring_outer_m;
 }
 

@@ -15,7 +15,7 @@ constexpr std::size_t kLeastPoints = 50;
 
 // The mean and the outline are two views of one plate; further apart than this and than four
 // sigma, there is more or less in the ring than the plate.
-constexpr double kAllowedDisagreement_rad = rad_from_deg(1.5);
+constexpr double kAllowedDisagreementRad = rad_from_deg(1.5);
 
 // Part of the angle between lines by which the mean of a plate cut into lines is off, rms.
 constexpr double kLineSampling = 0.025;
@@ -93,7 +93,7 @@ AttitudeEstimate estimate_by_ring_mean(const OrganisedCloud& cloud, const PlateG
 
   const double beta_sigma_rad = sigma_rad(ring, beta_rad, view);
   const double apart_rad = std::abs(beta_rad - view.outline_beta_rad);
-  if (apart_rad > std::max(kAllowedDisagreement_rad, 4.0 * beta_sigma_rad)) {
+  if (apart_rad > std::max(kAllowedDisagreementRad, 4.0 * beta_sigma_rad)) {
     return refusal(estimate, AttitudeVerdict::kForeignObject,
                    in_words("the ring's mean and the plate's outline are ", spoken_deg(apart_rad),
                             " deg apart: there is more or less in the ring than the plate"));

@@ -9,7 +9,7 @@
 namespace swivel {
 namespace {
 
-constexpr double kAlpha_rad = rad_from_deg(29.36);
+constexpr double kAlphaRad = rad_from_deg(29.36);
 
 Plane wall(double azimuth_rad, std::size_t points) {
   Plane plane;
@@ -21,11 +21,11 @@ Plane wall(double azimuth_rad, std::size_t points) {
   return plane;
 }
 
-// What a sweep sees that starts phi_offset away from the front, with the plate at kAlpha_rad, in
+// What a sweep sees that starts phi_offset away from the front, with the plate at kAlphaRad, in
 // a room that stands at yaw_rad.
 AlphaSweep perfect_sweep(double phi_offset_rad, double yaw_rad = 0.0) {
   AlphaSweep sweep;
-  sweep.beta_rad = kAlpha_rad - phi_offset_rad;
+  sweep.beta_rad = kAlphaRad - phi_offset_rad;
   sweep.beta_sigma_rad = rad_from_deg(0.13);
   for (int side = 0; side < 4; ++side) {
     sweep.walls.push_back(wall(yaw_rad + side * kPi / 2 - phi_offset_rad, 5000));
@@ -55,7 +55,7 @@ void expect_refused(const std::vector<AlphaSweep>& sweeps, const std::vector<std
 
 TEST(Alpha, IsExactWithoutNoise) {
   const AlphaFit fit = fitted(perfect_sweeps());
-  EXPECT_NEAR(fit.alpha_rad, kAlpha_rad, 1e-9);
+  EXPECT_NEAR(fit.alpha_rad, kAlphaRad, 1e-9);
   EXPECT_LT(fit.residual_rms_rad, 1e-9);
   EXPECT_EQ(fit.sweeps_used, 4U);
   EXPECT_TRUE(fit.converged);
@@ -68,24 +68,24 @@ TEST(Alpha, WhereTheSearchStartsDoesNotMatter) {
   for (const double start_deg : {12.0, 25.0, 48.0}) {
     AlphaOptions options;
     options.initial_alpha_rad = rad_from_deg(start_deg);
-    EXPECT_NEAR(fitted(perfect_sweeps(), options).alpha_rad, kAlpha_rad, 1e-9) << start_deg;
+    EXPECT_NEAR(fitted(perfect_sweeps(), options).alpha_rad, kAlphaRad, 1e-9) << start_deg;
   }
 }
 
 TEST(Alpha, TurningTheRoomTurnsAlphaTheOtherWayUnlessItsYawIsGiven) {
   const double yaw_rad = rad_from_deg(2.5);
-  EXPECT_NEAR(fitted(perfect_sweeps(yaw_rad)).alpha_rad, kAlpha_rad - yaw_rad, 1e-9);
+  EXPECT_NEAR(fitted(perfect_sweeps(yaw_rad)).alpha_rad, kAlphaRad - yaw_rad, 1e-9);
   AlphaOptions told;
   told.room_yaw_rad = yaw_rad;
-  EXPECT_NEAR(fitted(perfect_sweeps(yaw_rad), told).alpha_rad, kAlpha_rad, 1e-9);
+  EXPECT_NEAR(fitted(perfect_sweeps(yaw_rad), told).alpha_rad, kAlphaRad, 1e-9);
   told.room_yaw_rad = rad_from_deg(-105.0);
-  EXPECT_NEAR(fitted(perfect_sweeps(told.room_yaw_rad), told).alpha_rad, kAlpha_rad, 1e-9);
+  EXPECT_NEAR(fitted(perfect_sweeps(told.room_yaw_rad), told).alpha_rad, kAlphaRad, 1e-9);
 }
 
 TEST(Alpha, TurningEveryPlateByAnAngleAddsItToAlpha) {
   auto sweeps = perfect_sweeps();
   for (AlphaSweep& sweep : sweeps) sweep.beta_rad += rad_from_deg(1.7);
-  EXPECT_NEAR(fitted(sweeps).alpha_rad, kAlpha_rad + rad_from_deg(1.7), 1e-9);
+  EXPECT_NEAR(fitted(sweeps).alpha_rad, kAlphaRad + rad_from_deg(1.7), 1e-9);
 }
 
 TEST(Alpha, FurnitureAndTheOrderOfWallsDoNotMatter) {
@@ -95,7 +95,7 @@ TEST(Alpha, FurnitureAndTheOrderOfWallsDoNotMatter) {
     sweep.walls.push_back(wall(sweep.walls.back().azimuth_rad() + 0.1, 700));
     std::reverse(sweep.walls.begin(), sweep.walls.end());
   }
-  EXPECT_NEAR(fitted(sweeps).alpha_rad, kAlpha_rad, 1e-9);
+  EXPECT_NEAR(fitted(sweeps).alpha_rad, kAlphaRad, 1e-9);
 }
 
 TEST(Alpha, OneWallOutOfSquareHardlyMovesItAndIsNamedByItsAngle) {
@@ -104,7 +104,7 @@ TEST(Alpha, OneWallOutOfSquareHardlyMovesItAndIsNamedByItsAngle) {
     sweep.walls[1] = wall(sweep.walls[1].azimuth_rad() + rad_from_deg(0.5), 5000);
   }
   const AlphaFit fit = fitted(sweeps);
-  EXPECT_NEAR(fit.alpha_rad, kAlpha_rad, rad_from_deg(0.03));
+  EXPECT_NEAR(fit.alpha_rad, kAlphaRad, rad_from_deg(0.03));
   // The second wall's normal points to azimuth 90: it is the right-hand one.
   EXPECT_NEAR(fit.wall_angles_rad[static_cast<std::size_t>(Wall::kRight)], rad_from_deg(0.5),
               rad_from_deg(0.03));
@@ -136,7 +136,7 @@ TEST(Alpha, SigmaIsHonestForFewSweepsAndForMany) {
     constexpr int kRuns = 200;
     for (int run = 0; run < kRuns; ++run) {
       const AlphaFit fit = fitted(noisy_sweeps(count, 0.13, random));
-      const double errors_in_sigmas = (fit.alpha_rad - kAlpha_rad) / fit.sigma_rad;
+      const double errors_in_sigmas = (fit.alpha_rad - kAlphaRad) / fit.sigma_rad;
       squares += errors_in_sigmas * errors_in_sigmas;
       if (std::abs(errors_in_sigmas) < 1.0) ++within;
     }

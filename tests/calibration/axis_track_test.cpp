@@ -10,7 +10,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::int64_t kEpoch_ns = 1'790'000'000'000'000'000;  // double has 256 ns left here
+constexpr std::int64_t kEpochNs = 1'790'000'000'000'000'000;  // double has 256 ns left here
 
 AxisTrack track_of(const std::vector<AxisSample>& samples) {
   AxisTrack track;
@@ -23,7 +23,7 @@ std::vector<AxisSample> random_samples(unsigned seed, int count) {
   std::uniform_int_distribution<std::int64_t> step_ns(1, 40'000'000);
   std::uniform_real_distribution<double> angle_rad(-4.0, 4.0);
   std::vector<AxisSample> samples;
-  std::int64_t time_ns = kEpoch_ns;
+  std::int64_t time_ns = kEpochNs;
   for (int sample = 0; sample < count; ++sample) {
     samples.push_back({time_ns, angle_rad(random)});
     time_ns += step_ns(random);
@@ -37,9 +37,9 @@ std::optional<double> brute_force(const std::vector<AxisSample>& samples, std::i
     const AxisSample a = samples[after - 1];
     const AxisSample b = samples[after];
     if (time_ns < a.time_ns || time_ns > b.time_ns) continue;
-    const auto part = static_cast<long double>(time_ns - a.time_ns) /
-                      static_cast<long double>(b.time_ns - a.time_ns);
-    return static_cast<double>(a.angle_rad + part * (b.angle_rad - a.angle_rad));
+    const double part =
+        static_cast<double>(time_ns - a.time_ns) / static_cast<double>(b.time_ns - a.time_ns);
+    return (1.0 - part) * a.angle_rad + part * b.angle_rad;
   }
   return std::nullopt;
 }
@@ -48,9 +48,9 @@ TEST(AxisTrack, AgreesWithBruteForceInsideAndOutside) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const auto samples = random_samples(seed, 40);
     const AxisTrack track = track_of(samples);
-    const std::int64_t length_ns = samples.back().time_ns - kEpoch_ns;
+    const std::int64_t length_ns = samples.back().time_ns - kEpochNs;
     for (std::int64_t step = -20; step <= 1020; ++step) {
-      const std::int64_t time_ns = kEpoch_ns + length_ns / 1000 * step;
+      const std::int64_t time_ns = kEpochNs + length_ns / 1000 * step;
       const auto expected = brute_force(samples, time_ns);
       const auto angle_rad = track.angle_at(time_ns);
       ASSERT_EQ(angle_rad.has_value(), expected.has_value()) << step;
@@ -87,10 +87,10 @@ TEST(AxisTrack, AStraightStretchIsOneSegmentHoweverManySamplesItHas) {
   const double rate_rad_s = 3.1;
   AxisTrack track;
   for (int step = 0; step <= 100; ++step) {
-    const std::int64_t time_ns = kEpoch_ns + step * 10'000'000;
+    const std::int64_t time_ns = kEpochNs + std::int64_t{10'000'000} * step;
     ASSERT_EQ(track.add({time_ns, -0.3 + rate_rad_s * 0.01 * step}), AxisAdded::kAdded);
   }
-  const auto segment = track.segment_over(kEpoch_ns + 33'333'333, kEpoch_ns + 777'777'777);
+  const auto segment = track.segment_over(kEpochNs + 33'333'333, kEpochNs + 777'777'777);
   ASSERT_TRUE(segment);
   EXPECT_NEAR(segment->rate_rad_s, rate_rad_s, 1e-9);
   EXPECT_NEAR(segment->start_angle_rad, -0.3 + rate_rad_s * 0.033333333, 1e-9);
