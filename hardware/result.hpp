@@ -16,9 +16,10 @@ struct Failure {
 template <class Value>
 class Result {
  public:
-  Result(Value value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
-  Result(Failure failure)
-      : reason_(std::move(failure.reason)) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor): so that a function returns value or failure
+  Result(Value value) : value_(std::move(value)) {}
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  Result(Failure failure) : reason_(std::move(failure.reason)) {}
 
   explicit operator bool() const { return value_.has_value(); }
   Value& operator*() { return assert(value_), *value_; }
