@@ -191,7 +191,8 @@ void GrblPeer::execute_line(const std::string& line, std::int64_t now_ns) {
   } else {
     error = execute_motion(line, now_ns);
   }
-  if (state_ != State::kHome && !dead_) answer(error);
+  const bool answered = state_ == State::kHome || state_ == State::kSleep || dead_;
+  if (!answered) answer(error);
 }
 
 }  // namespace swivel::sim

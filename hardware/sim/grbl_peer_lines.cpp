@@ -93,6 +93,8 @@ double GrblPeer::target_deg(const GrblWords& words, bool absolute) const {
 
 bool GrblPeer::beyond_travel(double target) const {
   constexpr double kRounding_deg = 1e-6;
+  constexpr double kFarthest_deg = 1e6;  // beyond it GRBL's floats lose whole steps
+  if (std::abs(target) > kFarthest_deg) return true;
   return settings_.soft_limits() &&
          (target < -settings_.travel_deg() - kRounding_deg || target > kRounding_deg);
 }

@@ -28,6 +28,7 @@ GrblSettings::GrblSettings()
 
 bool GrblSettings::set(int number, double value) {
   if (!knows(number) || !std::isfinite(value) || value < 0.0 || value > 1e7) return false;
+  if (number >= 100 && number <= 102 && value > 1e4) return false;
   const bool rate = (number >= 100 && number <= 132) || number == 24 || number == 25;
   if (rate && value < 1e-3) return false;
   values_[number] = value;

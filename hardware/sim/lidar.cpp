@@ -46,8 +46,11 @@ double Lidar::beam_angle_rad(int step) const {
 
 Ray Lidar::ray(int step, double shaft_angle_rad) const {
   const double theta = beam_angle_rad(step) + options_.bias_deg * kRadPerDeg;
-  return {turned_about_z({options_.lever_arm_mm * 1e-3, 0.0, 0.0}, shaft_angle_rad),
-          turned_about_z({0.0, std::sin(theta), std::cos(theta)}, shaft_angle_rad)};
+  const double c = std::cos(shaft_angle_rad);
+  const double s = std::sin(shaft_angle_rad);
+  const double lever_arm_m = options_.lever_arm_mm * 1e-3;
+  const double level = std::sin(theta);
+  return {{lever_arm_m * c, lever_arm_m * s, 0.0}, {-s * level, c * level, std::cos(theta)}};
 }
 
 // A spot on an edge answers one of its sides, each as often as it covers of the spot, or now

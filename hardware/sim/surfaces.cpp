@@ -24,6 +24,11 @@ Slab between(double origin, double direction, double half_size) {
   return {std::min(a, b), std::max(a, b)};
 }
 
+// `v` in the frame whose X is `length`, which is level.
+Vector3 seen_along(const Vector3& length, const Vector3& v) {
+  return {dot(length, v), length.x * v.y - length.y * v.x, v.z};
+}
+
 }  // namespace
 
 std::optional<Hit> cast(const Ray& ray, const Wall& wall) {
@@ -35,8 +40,8 @@ std::optional<Hit> cast(const Ray& ray, const Wall& wall) {
 }
 
 std::optional<Hit> cast(const Ray& ray, const Box& box) {
-  const Vector3 origin = turned_about_z(ray.origin - box.centre, -box.yaw_rad);
-  const Vector3 direction = turned_about_z(ray.direction, -box.yaw_rad);
+  const Vector3 origin = seen_along(box.length, ray.origin - box.centre);
+  const Vector3 direction = seen_along(box.length, ray.direction);
   const Slab x = between(origin.x, direction.x, box.half_size.x);
   const Slab y = between(origin.y, direction.y, box.half_size.y);
   const Slab z = between(origin.z, direction.z, box.half_size.z);

@@ -26,11 +26,11 @@ struct Wall {
   double reflectivity = 0.5;
 };
 
-// An upright box, turned by `yaw_rad` about its own centre.
+// An upright box. `length` is the level direction of its own x.
 struct Box {
   Vector3 centre;
   Vector3 half_size;
-  double yaw_rad = 0.0;
+  Vector3 length{1.0, 0.0, 0.0};
   double reflectivity = 0.5;
 };
 

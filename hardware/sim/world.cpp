@@ -34,7 +34,7 @@ Box box_of(const Furniture& piece, double room_yaw_rad) {
       room_yaw_rad);
   box.half_size =
       0.5 * kMetre * Vector3{piece.length_mm, piece.width_mm, piece.top_mm - piece.bottom_mm};
-  box.yaw_rad = room_yaw_rad + piece.yaw_deg * kRadPerDeg;
+  box.length = turned_about_z({1.0, 0.0, 0.0}, room_yaw_rad + piece.yaw_deg * kRadPerDeg);
   box.reflectivity = piece.reflectivity;
   return box;
 }
@@ -44,7 +44,7 @@ Box clutter_of(const ClutterOptions& clutter, double plate_depth_mm) {
   box.centre = turned_about_z({clutter.distance_mm * kMetre, 0.0, -plate_depth_mm * kMetre},
                               clutter.azimuth_deg * kRadPerDeg);
   box.half_size = 0.5 * clutter.size_mm * kMetre * Vector3{1.0, 1.0, 1.0};
-  box.yaw_rad = clutter.azimuth_deg * kRadPerDeg;
+  box.length = turned_about_z({1.0, 0.0, 0.0}, clutter.azimuth_deg * kRadPerDeg);
   return box;
 }
 
