@@ -54,6 +54,7 @@ Outcome Sequencer::make_ready() {
   doing("connecting to the controller at " + options_.stepper.address, false);
   Outcome connected = stepper_.connect();
   if (!connected) return connected;
+  note_controller();
   doing("homing", false);
   announcer_.phase(msg::PHASE_HOMING);
   return stepper_.home();

@@ -18,6 +18,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "components/stepper_sequencer/announcer.hpp"
 #include "components/stepper_sequencer/interruption.hpp"
@@ -44,6 +45,8 @@ struct SequencerHealth {
   std::uint64_t requests_refused = 0;
   std::uint64_t faults = 0;
   std::uint64_t garbage_lines = 0;  // from the controller
+  std::string firmware;             // its version
+  std::vector<std::string> advice;  // on its settings
 };
 
 class Sequencer {
@@ -80,6 +83,7 @@ class Sequencer {
   std::optional<msg::SweepRequest> await_request();
   void refuse(const msg::SweepRequest& request, const std::string& reason);
   void release(const std::string& why_queued_is_refused = {});
+  void note_controller();
   void doing(const std::string& words, bool ready);
   void note_error(const std::string& reason);
 

@@ -70,6 +70,12 @@ void Sequencer::doing(const std::string& words, bool ready) {
   health_.garbage_lines = stepper_.garbage_lines();
 }
 
+void Sequencer::note_controller() {
+  const std::lock_guard lock(mutex_);
+  health_.firmware = stepper_.firmware();
+  health_.advice = stepper_.settings().advice;
+}
+
 void Sequencer::note_error(const std::string& reason) {
   const std::lock_guard lock(mutex_);
   ++health_.faults;

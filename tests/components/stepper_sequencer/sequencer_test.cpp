@@ -39,6 +39,7 @@ TEST(Sequencer, HomesAtItsStartAndIsIdle) {
   EXPECT_THAT(phases_of(rig.sweeps()), ElementsAre(msg::PHASE_HOMING, msg::PHASE_IDLE));
   EXPECT_EQ(rig.peer.homings(), 1);
   EXPECT_TRUE(rig.sequencer.health().ready);
+  EXPECT_EQ(rig.sequencer.health().firmware, "1.1h");
   EXPECT_GT(rig.sweeps()[0].time_ns(), 0);
 }
 
