@@ -171,26 +171,39 @@ struct LineAzimuths {
   std::vector<std::size_t> beams;  // a line
 };
 
+// Beams further off than this are of the fan's other end, half a turn away.
+constexpr double kOtherEndRad = 0.7;
+
+LineAzimuths fit_near(const std::vector<PlateBeam>& beams, const LineAzimuths& guess,
+                      double within_rad) {
+  LineAzimuths fit;
+  fit.beams.assign(guess.beams.size(), 0);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // of line and azimuth
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
+  double count = 0.0;
+  for (const PlateBeam& beam : beams) {
+    const auto line = static_cast<double>(beam.line);
+    const double guessed_rad = guess.first_rad + guess.step_rad * line;
+    if (std::abs(beam.azimuth_rad - guessed_rad) > within_rad) continue;
+    ++fit.beams[beam.line];
+    count += 1.0;
+    sum += Eigen::Vector2d(line, beam.azimuth_rad);
+    products += line * Eigen::Vector2d(line, beam.azimuth_rad);
+  }
+  if (count < 1.0) return fit;
+  const double squares = products.x() - sum.x() * sum.x() / count;
+  fit.step_rad = squares > 0.0 ? (products.y() - sum.x() * sum.y() / count) / squares : 0.0;
+  fit.first_rad = (sum.y() - fit.step_rad * sum.x()) / count;
+  return fit;
+}
+
 LineAzimuths fit_line_azimuths(const std::vector<PlateBeam>& beams, std::size_t lines) {
   LineAzimuths fit;
   fit.beams.assign(lines, 0);
-  double mean_line = 0.0;
-  double mean_rad = 0.0;
-  const auto count = static_cast<double>(beams.size());
-  for (const PlateBeam& beam : beams) {
-    ++fit.beams[beam.line];
-    mean_line += static_cast<double>(beam.line) / count;
-    mean_rad += beam.azimuth_rad / count;
+  fit = fit_near(beams, fit, 2 * kPi);
+  for (const double within_rad : {2 * kOtherEndRad, kOtherEndRad, kOtherEndRad}) {
+    fit = fit_near(beams, fit, within_rad);
   }
-  double squares = 0.0;
-  double products = 0.0;
-  for (const PlateBeam& beam : beams) {
-    const double from_mean = static_cast<double>(beam.line) - mean_line;
-    squares += from_mean * from_mean;
-    products += from_mean * (beam.azimuth_rad - mean_rad);
-  }
-  fit.step_rad = squares > 0.0 ? products / squares : 0.0;
-  fit.first_rad = mean_rad - fit.step_rad * mean_line;
   return fit;
 }
 
