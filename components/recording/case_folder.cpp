@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -67,7 +68,7 @@ Outcome check_stamps(const std::vector<std::vector<StampedLine>>& sweeps, const 
 // when its last beam was in.
 std::vector<double> first_beam_times_ns(const std::vector<CaseLine>& lines, const StampFit& fit,
                                         double line_duration_ns) {
-  std::vector<double> times_ns(fit.first_ns.size(), INFINITY);
+  std::vector<double> times_ns(fit.first_ns.size(), std::numeric_limits<double>::infinity());
   for (const CaseLine& line : lines) {
     const double time_ns = ns_from_s(line.arrival_s) - line.line * fit.period_ns - line_duration_ns;
     times_ns[line.sweep] = std::min(times_ns[line.sweep], time_ns);

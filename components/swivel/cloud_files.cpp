@@ -2,10 +2,11 @@
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
-#include <pcl/io/ply_io.h>
 
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace swivel {
@@ -30,6 +31,16 @@ pcl::PCLPointCloud2 pcl_cloud(const CloudPoint* points, std::size_t width, std::
   cloud.data.resize(width * height * sizeof(CloudPoint));
   if (!cloud.data.empty()) std::memcpy(cloud.data.data(), points, cloud.data.size());
   return cloud;
+}
+
+// Written by ourselves: PCL adds a face element, cannot leave a comment, refuses an empty cloud.
+std::string ply_header(std::size_t points, std::size_t left_out) {
+  std::ostringstream header;
+  header << "ply\nformat binary_little_endian 1.0\ncomment swivel: " << left_out
+         << " invalid points are left out\nelement vertex " << points
+         << "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\n"
+         << "end_header\n";
+  return header.str();
 }
 
 // Runs write(part) and gives the file its name, or says why not. PCL reports some failures by
@@ -65,13 +76,17 @@ Result<std::size_t> write_ply(const std::string& path, const OrganisedCloud& clo
   for (const CloudPoint& point : cloud.points)
     if (point.valid()) valid.push_back(point);
 
-  const auto whole = pcl_cloud(valid.data(), valid.size(), 1);
+  const std::size_t left_out = cloud.points.size() - valid.size();
   const Outcome written = write_whole(path, [&](const std::string& part) {
-    return pcl::PLYWriter().writeBinary(part, whole, Eigen::Vector4f::Zero(),
-                                        Eigen::Quaternionf::Identity(), false);
+    std::ofstream file(part, std::ios::binary);
+    file << ply_header(valid.size(), left_out);
+    file.write(reinterpret_cast<const char*>(valid.data()),
+               static_cast<std::streamsize>(valid.size() * sizeof(CloudPoint)));
+    file.close();
+    return file ? 0 : -1;
   });
   if (!written) return Failure{written.reason()};
-  return cloud.points.size() - valid.size();
+  return left_out;
 }
 
 }  // namespace swivel

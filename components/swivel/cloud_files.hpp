@@ -1,6 +1,7 @@
 // A cloud as files that other programs open.
 //   PCD   binary, organised: a row a line, a column a beam; invalid points are NaN
-//   PLY   binary, height 1, without a camera element; invalid points are left out
+//   PLY   binary, a list of points, without camera and faces; invalid points are left out, and a
+//         comment says how many
 // Both hold x, y, z in metres and intensity, as float32, bit for bit.
 #pragma once
 

@@ -1,25 +1,15 @@
 // A recording through the same stages as a live rig, without DDS, as fast as the machine goes.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 
-#include "calibration/organised_cloud.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/recording/recording.hpp"
-#include "swivel/idl/swivel.h"
+#include "components/swivel/processed_sweep.hpp"
 
 namespace swivel {
-
-struct ProcessedSweep {
-  std::size_t index = 0;  // counted from 0
-  msg::Sweep sweep;       // as assembled
-  msg::Attitude attitude;
-  OrganisedCloud raw;    // in frame O'; of a rig that measures its axis in the base
-  OrganisedCloud cloud;  // in the base if the attitude's verdict says so, else as raw
-};
 
 // The recording, or an ExitError that says what to do.
 Recording open_recording(const std::string& path);

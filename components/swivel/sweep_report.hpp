@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "components/swivel/offline_pipeline.hpp"
+#include "components/swivel/processed_sweep.hpp"
 
 namespace swivel {
 

@@ -1,0 +1,29 @@
+// A calibration of alpha by a live rig's alpha_calibrator.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "components/common/program.hpp"
+#include "components/dds/participant.hpp"
+
+namespace swivel {
+
+class LiveCalibration {
+ public:
+  // Subscribes: before participant.start().
+  explicit LiveCalibration(Participant& participant);
+
+  // Requests it and tells how it goes on stdout. Throws ExitError with the reason of a refusal.
+  void run(int mode, int count, double room_yaw_deg, StopSignal& stop);
+
+ private:
+  Writer<msg::CalibrationRequest> requests_;
+  std::mutex mutex_;  // of what follows
+  std::condition_variable came_;
+  std::deque<msg::CalibrationProgress> progress_;
+};
+
+}  // namespace swivel
