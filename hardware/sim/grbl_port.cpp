@@ -1,11 +1,14 @@
 #include "hardware/sim/grbl_port.hpp"
 
 #include <fcntl.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <termios.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <system_error>
 #include <utility>
@@ -14,14 +17,12 @@ namespace swivel::sim {
 namespace {
 
 constexpr std::int64_t kBusyTick_ns = 2'000'000;
-constexpr std::int64_t kClosedTick_ns = 5'000'000;  // a pty does not tell that it was opened
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-// Raw, so that nothing is echoed. Opened and closed once, it also reports from then on
-// whether a client has it open: a hang-up means that none has.
+// Raw, so that nothing is echoed.
 void prepare(const std::string& path) {
   const FileDescriptor client_side(::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   termios settings{};
@@ -41,6 +42,7 @@ GrblPort::GrblPort(GrblPeer& peer, const std::string& link)
   }
   path_ = path;
   prepare(path_);
+  watch_openings();
   make_link();
 }
 
@@ -59,36 +61,48 @@ GrblPort::~GrblPort() {
   if (!link_.empty()) ::unlink(link_.c_str());
 }
 
-// A client has it open, or has left something behind that is still to be read.
-bool GrblPort::open_or_unread() const {
-  pollfd state{pty_.get(), POLLIN, 0};
-  ::poll(&state, 1, 0);
-  return (state.revents & POLLHUP) == 0 || (state.revents & POLLIN) != 0;
+// A pty does not tell its other side when it is opened, but the file system does.
+void GrblPort::watch_openings() {
+  openings_ = FileDescriptor(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  if (!openings_.open() ||
+      ::inotify_add_watch(openings_.get(), path_.c_str(), IN_OPEN | IN_CLOSE) < 0) {
+    fail("cannot watch the stepper's pty");
+  }
+}
+
+// Opening raises DTR, which resets the controller, unless somebody has it open already.
+void GrblPort::note_openings(std::int64_t now_ns) {
+  alignas(inotify_event) char bytes[4096];
+  const ssize_t count = ::read(openings_.get(), bytes, sizeof bytes);
+  for (ssize_t at = 0; at < count;) {
+    inotify_event event{};
+    std::memcpy(&event, bytes + at, sizeof event);
+    at += static_cast<ssize_t>(sizeof event + event.len);
+    if ((event.mask & IN_CLOSE) != 0U) clients_ = std::max(0, clients_ - 1);
+    if ((event.mask & IN_OPEN) == 0U || clients_++ > 0) continue;
+    outgoing_.clear();
+    peer_->power_up(now_ns);
+  }
 }
 
 void GrblPort::add_to(std::vector<pollfd>& waits) const {
-  if (!opened_) return;  // poll would return at once, again and again
+  waits.push_back({openings_.get(), POLLIN, 0});
+  if (clients_ == 0) return;  // hung up: poll would return at once, again and again
   const bool sends = !outgoing_.empty();
   waits.push_back({pty_.get(), static_cast<short>(sends ? POLLIN | POLLOUT : POLLIN), 0});
 }
 
 std::int64_t GrblPort::next_event_ns(std::int64_t now_ns) const {
-  if (!opened_) return now_ns + kClosedTick_ns;
   if (peer_->busy(now_ns)) return now_ns + kBusyTick_ns;
   return std::numeric_limits<std::int64_t>::max();
 }
 
 void GrblPort::serve(std::int64_t now_ns) {
-  const bool was_open = opened_;
-  opened_ = open_or_unread();
-  if (opened_ && !was_open) {
-    outgoing_.clear();
-    peer_->power_up(now_ns);
-  }
-  if (opened_) read_client(now_ns);
+  note_openings(now_ns);
+  read_client(now_ns);
   peer_->advance(now_ns);
   outgoing_ += peer_->take_output();
-  if (!opened_) outgoing_.clear();
+  if (clients_ == 0) outgoing_.clear();
   write_client();
 }
 

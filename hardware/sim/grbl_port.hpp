@@ -28,7 +28,8 @@ class GrblPort {
 
  private:
   void make_link();
-  bool open_or_unread() const;
+  void watch_openings();
+  void note_openings(std::int64_t now_ns);
   void read_client(std::int64_t now_ns);
   void write_client();
 
@@ -36,7 +37,8 @@ class GrblPort {
   std::string link_;
   std::string path_;
   FileDescriptor pty_;
-  bool opened_ = false;  // by a client
+  FileDescriptor openings_;
+  int clients_ = 0;  // that have it open
   std::string outgoing_;
 };
 
