@@ -1,0 +1,105 @@
+#include "components/swivel_bench/bench_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "components/common/strict_yaml.hpp"
+#include "components/swivel_bench/bench_options.hpp"
+
+namespace swivel {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string written(const std::string& text) {
+  const std::string path = ::testing::TempDir() + "bench_file_test.yaml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+std::string refusal_of(const std::string& text) {
+  try {
+    load_bench_file(written(text));
+  } catch (const ConfigurationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BenchFile, ShippedFileSaysWhatTheDefaultsAre) {
+  const sim::BenchOptions shipped = load_bench_file(SWIVEL_CONFIG "/bench.yaml");
+  const sim::BenchOptions defaults;
+  EXPECT_EQ(shipped.seed, defaults.seed);
+  EXPECT_EQ(shipped.world.plate.alpha_deg, defaults.world.plate.alpha_deg);
+  EXPECT_EQ(shipped.world.plate.depth_mm, defaults.world.plate.depth_mm);
+  EXPECT_EQ(shipped.world.room.front_mm, defaults.world.room.front_mm);
+  EXPECT_EQ(shipped.world.room.furniture.size(), defaults.world.room.furniture.size());
+  EXPECT_EQ(shipped.lidar.noise_mm, defaults.lidar.noise_mm);
+  EXPECT_EQ(shipped.lidar.dropout_rate, defaults.lidar.dropout_rate);
+  EXPECT_EQ(shipped.timing.scan_period_ms, defaults.timing.scan_period_ms);
+  EXPECT_EQ(shipped.timing.start_latency_ms, defaults.timing.start_latency_ms);
+  EXPECT_EQ(shipped.motor.home_angle_deg, defaults.motor.home_angle_deg);
+  EXPECT_EQ(shipped.motor.shaft.steps_per_turn, defaults.motor.shaft.steps_per_turn);
+  EXPECT_EQ(shipped.server.port, defaults.server.port);
+}
+
+TEST(BenchFile, ReadsEverySection) {
+  const sim::BenchOptions bench = load_bench_file(
+      written("seed: 9\nroom: {yaw_deg: 3, furniture: {}}\nplate: {present: false}\n"
+              "ring_clutter: {present: true}\nlidar: {noise_mm: 5}\n"
+              "timing: {stamp_origin: rear_centre}\nstepper: {lose_every: 50}\n"
+              "server: {chop: true}\n"));
+  EXPECT_EQ(bench.seed, 9U);
+  EXPECT_EQ(bench.world.room.yaw_deg, 3.0);
+  EXPECT_TRUE(bench.world.room.furniture.empty());
+  EXPECT_FALSE(bench.world.plate.present);
+  EXPECT_TRUE(bench.world.ring_clutter.present);
+  EXPECT_EQ(bench.lidar.noise_mm, 5.0);
+  EXPECT_TRUE(bench.timing.stamp_at_rear_centre);
+  EXPECT_EQ(bench.motor.lose_every, 50);
+  EXPECT_TRUE(bench.server.misbehaviour.chop);
+}
+
+TEST(BenchFile, RefusesWhatItDoesNotKnowWithFileAndLine) {
+  EXPECT_THAT(refusal_of("seed: 1\nplate: {alpha: 30}\n"), HasSubstr("bench_file_test.yaml:2"));
+  EXPECT_THAT(refusal_of("walls: 4\n"), HasSubstr("walls"));
+  EXPECT_THAT(refusal_of("lidar: {noise_mm: -1}\n"), HasSubstr("noise_mm"));
+  EXPECT_THAT(refusal_of("lidar: {last_step: 1440}\n"), HasSubstr("less than a turn"));
+  EXPECT_THAT(refusal_of("stepper: {start_latency_max_ms: 1}\n"), HasSubstr("not be below"));
+  EXPECT_THAT(refusal_of("room: {furniture: {box: {top_mm: -5}}}\n"), HasSubstr("above"));
+}
+
+sim::BenchOptions parsed(std::vector<std::string> arguments) {
+  CLI::App app;
+  const BenchCommandLine command_line(app);
+  arguments.insert(arguments.begin(), {"--config", SWIVEL_CONFIG "/bench.yaml"});
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+  app.parse(arguments);
+  return command_line.options();
+}
+
+TEST(BenchCommandLine, WinsOverTheFile) {
+  const sim::BenchOptions bench =
+      parsed({"--seed", "5", "--noise-mm", "0", "--alpha-deg", "31.5", "--port", "10940",
+              "--no-plate", "--close-every", "7", "--truth", "t.csv"});
+  EXPECT_EQ(bench.seed, 5U);
+  EXPECT_EQ(bench.lidar.noise_mm, 0.0);
+  EXPECT_EQ(bench.world.plate.alpha_deg, 31.5);
+  EXPECT_EQ(bench.server.port, 10940);
+  EXPECT_FALSE(bench.world.plate.present);
+  EXPECT_EQ(bench.server.misbehaviour.close_every, 7);
+  EXPECT_EQ(bench.truth_path, "t.csv");
+}
+
+TEST(BenchCommandLine, RefusesNonsense) {
+  EXPECT_THROW(parsed({"--noise-mm", "-1"}), CLI::ParseError);
+  EXPECT_THROW(parsed({"--port", "70000"}), CLI::ParseError);
+  EXPECT_THROW(parsed({"--noise"}), CLI::ParseError);
+}
+
+}  // namespace
+}  // namespace swivel
