@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calibration/transform_cloud.hpp"
 #include "components/common/calibration_file.hpp"
 #include "components/common/strict_yaml.hpp"
 
@@ -28,21 +29,9 @@ msg::Verdict to_message(AttitudeVerdict verdict) {
 }
 
 // Eqs (8) and (9), about the axis wherever it stands in the base.
-Eigen::Isometry3f base_from_start(const RigGeometry& rig, double phi_offset_rad) {
+Eigen::Isometry3d base_from_start(const RigGeometry& rig, double phi_offset_rad) {
   const Eigen::AngleAxisd turn(phi_offset_rad, Eigen::Vector3d::UnitZ());
-  const Eigen::Isometry3d T_base_start = rig.T_base_axis * turn * rig.T_base_axis.inverse();
-  return T_base_start.cast<float>();
-}
-
-void transform(const Eigen::Isometry3f& T_to_from, OrganisedCloud& cloud) {
-  const Eigen::Matrix3f R = T_to_from.linear();
-  const Eigen::Vector3f t = T_to_from.translation();
-  for (CloudPoint& point : cloud.points) {
-    const Eigen::Vector3f turned = R * Eigen::Vector3f(point.x_m, point.y_m, point.z_m) + t;
-    point.x_m = turned.x();
-    point.y_m = turned.y();
-    point.z_m = turned.z();
-  }
+  return rig.T_base_axis * turn * rig.T_base_axis.inverse();
 }
 
 msg::Attitude blank_attitude(const msg::Sweep& sweep) {
@@ -79,10 +68,15 @@ Corrector::Corrector(const RigFile& rig) : rig_(rig) {
   alpha_deg_ = deg_from_rad(rig.plate->alpha_rad);
 }
 
-void Corrector::set_calibration(const msg::Calibration& calibration) {
+std::string Corrector::set_calibration(const msg::Calibration& calibration) {
+  const double sigma_deg = ::swivel::alpha_sigma_deg(calibration);
+  if (!std::isfinite(calibration.alpha_deg()) || !std::isfinite(sigma_deg)) {
+    return "its alpha or the variance of it is not a number; calibrate again";
+  }
   alpha_deg_ = calibration.alpha_deg();
-  alpha_sigma_deg_ = ::swivel::alpha_sigma_deg(calibration);
+  alpha_sigma_deg_ = sigma_deg;
   calibrated_ = true;
+  return {};
 }
 
 msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud) const {
@@ -98,7 +92,7 @@ msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud)
   attitude.calibrated(calibrated_);
   fill((*estimator_)(cloud, *rig_.plate), attitude);
   if (attitude.verdict() == msg::VERDICT_GOOD) {
-    transform(base_from_start(rig_.geometry, rad_from_deg(attitude.phi_offset_deg())), cloud);
+    transform_cloud(base_from_start(rig_.geometry, rad_from_deg(attitude.phi_offset_deg())), cloud);
     if (sweep.lines_missing() > 0) attitude.reason("the plate is whole; " + sweep.reason());
   }
   return attitude;

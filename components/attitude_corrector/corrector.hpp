@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "calibration/attitude.hpp"
 #include "components/common/rig_file.hpp"
@@ -15,8 +16,8 @@ class Corrector {
   // commanded axis and no plate.
   explicit Corrector(const RigFile& rig);
 
-  // From the next sweep on.
-  void set_calibration(const msg::Calibration& calibration);
+  // From the next sweep on. Says why it is not taken, or nothing.
+  std::string set_calibration(const msg::Calibration& calibration);
 
   // Estimates the attitude and, if it is good, turns the cloud into the base. A cloud whose
   // attitude is not good is left as it came.

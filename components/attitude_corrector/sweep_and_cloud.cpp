@@ -12,7 +12,11 @@ constexpr std::size_t kMostWaiting = 16;
 }  // namespace
 
 bool SweepAndCloud::add(const msg::Sweep& assembled) {
-  if (assembled.lines_used() == 0 || assembled.first_beam_time_ns() == 0) return false;
+  if (assembled.lines_used() == 0) {
+    take_back(assembled);
+    return false;
+  }
+  if (assembled.first_beam_time_ns() == 0) return false;
   waiting_.push_back(assembled);
   if (waiting_.size() > kMostWaiting) {
     waiting_.pop_front();
@@ -33,6 +37,15 @@ std::string SweepAndCloud::add(const PointCloud2Message& message) {
   cloud_stamp_ns_ = stamp_ns(message);
   match();
   return {};
+}
+
+// Of a sweep that turned out to be none; its cloud, should it come, is refused.
+void SweepAndCloud::take_back(const msg::Sweep& assembled) {
+  const auto gone = std::remove_if(waiting_.begin(), waiting_.end(), [&](const msg::Sweep& sweep) {
+    return sweep.sweep_id() == assembled.sweep_id();
+  });
+  sweeps_without_cloud_ += static_cast<std::uint64_t>(waiting_.end() - gone);
+  waiting_.erase(gone, waiting_.end());
 }
 
 void SweepAndCloud::match() {

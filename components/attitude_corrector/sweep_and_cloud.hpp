@@ -28,6 +28,7 @@ class SweepAndCloud {
   std::uint64_t sweeps_without_cloud() const { return sweeps_without_cloud_; }
 
  private:
+  void take_back(const msg::Sweep& assembled);
   void match();
 
   std::deque<msg::Sweep> waiting_;   // sweeps whose cloud has not come

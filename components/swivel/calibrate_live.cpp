@@ -17,12 +17,12 @@ constexpr auto kSilence = std::chrono::seconds(150);  // the calibrator itself g
 
 LiveCalibration::LiveCalibration(Participant& participant)
     : requests_(participant, kCalibrationRequestTopic) {
-  participant.subscribe<msg::CalibrationProgress>(
-      kCalibrationProgressTopic, [this](const msg::CalibrationProgress& step) {
-        const std::lock_guard lock(mutex_);
-        progress_.push_back(step);
-        came_.notify_all();
-      });
+  participant.subscribe<msg::CalibrationProgress>(kCalibrationProgressTopic,
+                                                  [this](const msg::CalibrationProgress& step) {
+                                                    const std::lock_guard lock(mutex_);
+                                                    progress_.push_back(step);
+                                                    came_.notify_all();
+                                                  });
 }
 
 void LiveCalibration::run(int mode, int count, double room_yaw_deg, StopSignal& stop) {
@@ -43,8 +43,10 @@ void LiveCalibration::run(int mode, int count, double room_yaw_deg, StopSignal& 
       if (step.request_id() != request.request_id()) continue;
       answered = true;
       last_news = steady_clock::now();
-      if (step.state() == msg::CALIBRATION_REFUSED) throw ExitError(kExitBadData, "no calibration: " + step.words());
-      std::cout << step.sweeps_used() << " of " << step.sweeps_wanted() << " sweeps: " << step.words() << std::endl;
+      if (step.state() == msg::CALIBRATION_REFUSED)
+        throw ExitError(kExitBadData, "no calibration: " + step.words());
+      std::cout << step.sweeps_used() << " of " << step.sweeps_wanted()
+                << " sweeps: " << step.words() << std::endl;
       if (step.state() == msg::CALIBRATION_DONE) return;
     }
     if (steady_clock::now() - last_news > (answered ? kSilence : kAnswer)) {

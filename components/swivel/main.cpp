@@ -4,11 +4,17 @@
 
 int main(int argc, char** argv) {
   using namespace swivel;
+  StopSignal stop;
   CLI::App app("Swivel: an accurate 3D scanner from a 2D lidar on an open-loop stepper", "swivel");
   app.set_version_flag("--version", "swivel " SWIVEL_VERSION);
   app.require_subcommand(1);
   Verb verb;
+  add_up(app, stop, verb);
+  add_status(app, stop, verb);
+  add_scan(app, stop, verb);
+  add_calibrate(app, stop, verb);
+  add_replay(app, stop, verb);
   add_process(app, verb);
-  add_calibrate(app, verb);
+  add_demo(app, stop, verb);
   return run_program(app, argc, argv, [&] { return verb(); });
 }

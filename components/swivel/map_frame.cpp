@@ -30,6 +30,7 @@ Interval extent(std::vector<float>& values) {
 
 std::size_t usual_count(const std::map<int, std::size_t>& slices) {
   std::vector<std::size_t> counts;
+  counts.reserve(slices.size());
   for (const auto& [slice, count] : slices) counts.push_back(count);
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());

@@ -32,7 +32,8 @@ void check_mode(const RigFile& rig, int mode) {
   if (rig.modes.lines.count(mode) != 0) return;
   std::string known;
   for (const auto& [number, lines] : rig.modes.lines) known += " " + std::to_string(number);
-  throw ExitError(kExitUsage, "mode " + std::to_string(mode) + " is not one of this rig's:" + known);
+  throw ExitError(kExitUsage,
+                  "mode " + std::to_string(mode) + " is not one of this rig's:" + known);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// swivel calibrate alpha RECORDING -o DIR: the plate's true azimuth, from a recording's sweeps.
+// swivel calibrate alpha: the plate's true azimuth, by a live rig or from a recording's sweeps.
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <filesystem>
@@ -8,7 +8,10 @@
 #include "components/alpha_calibrator/alpha_calibration.hpp"
 #include "components/common/calibration_file.hpp"
 #include "components/common/program.hpp"
+#include "components/swivel/calibrate_live.hpp"
 #include "components/swivel/offline_pipeline.hpp"
+#include "components/swivel/participants.hpp"
+#include "components/swivel/roll.hpp"
 #include "components/swivel/text_file.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
@@ -21,6 +24,8 @@ struct CalibrateOptions {
   std::string folder;
   std::string rig_file;
   std::optional<double> room_yaw_deg;
+  int mode = 7;  // live
+  int count = 5;
 };
 
 msg::Calibration fit(const AlphaCalibration& alpha, const std::string& recording) {
@@ -52,21 +57,48 @@ int calibrate_alpha(const CalibrateOptions& options) {
   return kExitOk;
 }
 
+int calibrate_live(const CommonOptions& common, const CalibrateOptions& options, StopSignal& stop) {
+  start_log("swivel", "warning");
+  const RigFile rig = load_rig_file(common.rig_file);
+  Participant participant(common.participant("swivel_calibrate", rig.rig));
+  const Roll roll(participant);
+  LiveCalibration calibration(participant);
+  participant.start();
+  const std::string missing = roll.await(participants_of("all"), std::chrono::seconds(30));
+  if (!missing.empty()) throw ExitError(kExitUnavailable, missing + "; start them with: swivel up");
+  calibration.run(options.mode, options.count, options.room_yaw_deg.value_or(0.0), stop);
+  return kExitOk;
+}
+
 }  // namespace
 
-void add_calibrate(CLI::App& app, Verb& chosen) {
+void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
   CLI::App* const calibrate =
       app.add_subcommand("calibrate", "Finds what the drawing does not say");
   calibrate->require_subcommand(1);
   CLI::App* const verb =
       calibrate->add_subcommand("alpha", "The plate's azimuth, from the walls of a square room");
+  const auto common = std::make_shared<CommonOptions>();
   const auto options = std::make_shared<CalibrateOptions>();
-  verb->add_option("recording", options->recording, "A case folder of the plate rig")->required();
-  verb->add_option("-o,--output", options->folder, "The folder for calibration.yaml")->required();
-  verb->add_option("--rig", options->rig_file, "The rig file [that which suits the recording]");
+  auto* const recording = verb->add_option("recording", options->recording,
+                                           "A case folder of the plate rig; without it, live");
+  recording->needs(
+      verb->add_option("-o,--output", options->folder,
+                       "The folder for calibration.yaml; live, alpha_calibrator has it"));
+  verb->add_option("--mode", options->mode, "Live: of the sweeps")->capture_default_str();
+  verb->add_option("--count", options->count, "Live: how many sweeps")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   verb->add_option("--room-yaw-deg", options->room_yaw_deg,
                    "Azimuth of the room's front as the rig stands [as recorded, or 0]");
-  verb->callback([options, &chosen] { chosen = [options] { return calibrate_alpha(*options); }; });
+  add_common_options(*verb, *common);
+  verb->callback([=, &stop, &chosen] {
+    options->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    chosen = [=, &stop] {
+      return options->recording.empty() ? calibrate_live(*common, *options, stop)
+                                        : calibrate_alpha(*options);
+    };
+  });
 }
 
 }  // namespace swivel

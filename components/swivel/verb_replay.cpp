@@ -108,7 +108,8 @@ class Pace {
   void await(std::int64_t time_ns, StopSignal& stop) {
     if (at_once_) return;
     if (first_ns_ == 0) first_ns_ = time_ns;
-    const std::chrono::duration<double> passed(static_cast<double>(time_ns - first_ns_) * 1e-9 / rate_);
+    const std::chrono::duration<double> passed(static_cast<double>(time_ns - first_ns_) * 1e-9 /
+                                               rate_);
     const auto due = start_ + std::chrono::duration_cast<steady_clock::duration>(passed);
     const auto left = std::chrono::ceil<milliseconds>(due - steady_clock::now());
     if (left.count() > 0) stop.wait_for(left);
@@ -156,7 +157,8 @@ void add_replay(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
   verb->add_flag("--max", options->as_fast_as_possible, "As fast as the readers can follow");
-  verb->add_option("--wait-s", options->wait_s, "How long to wait for readers")->capture_default_str();
+  verb->add_option("--wait-s", options->wait_s, "How long to wait for readers")
+      ->capture_default_str();
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
     const bool rig_given = verb->count("--rig") > 0;

@@ -55,9 +55,8 @@ void add_scan(CLI::App& app, StopSignal& stop, Verb& chosen) {
   verb->add_flag("--no-clouds", options->kinds.no_clouds, "Write no PCD and PLY");
   verb->add_flag("--no-pictures", options->kinds.no_pictures, "Write no PNG");
   add_common_options(*verb, *common);
-  verb->callback([=, &stop, &chosen] {
-    chosen = [=, &stop] { return run_scan(*common, *options, stop); };
-  });
+  verb->callback(
+      [=, &stop, &chosen] { chosen = [=, &stop] { return run_scan(*common, *options, stop); }; });
 }
 
 }  // namespace swivel

@@ -7,9 +7,16 @@
 
 namespace swivel {
 
+class StopSignal;
+
 using Verb = std::function<int()>;
 
+void add_up(CLI::App& app, StopSignal& stop, Verb& chosen);
+void add_status(CLI::App& app, StopSignal& stop, Verb& chosen);
+void add_scan(CLI::App& app, StopSignal& stop, Verb& chosen);
+void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen);
+void add_replay(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_process(CLI::App& app, Verb& chosen);
-void add_calibrate(CLI::App& app, Verb& chosen);
+void add_demo(CLI::App& app, StopSignal& stop, Verb& chosen);
 
 }  // namespace swivel
