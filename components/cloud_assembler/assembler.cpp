@@ -12,6 +12,8 @@ using std::chrono::steady_clock;
 constexpr std::size_t kMostWaitingLines = 400;
 constexpr std::uint32_t kMostLines = 20000;
 constexpr std::size_t kMostBeams = 10000;
+constexpr double kShortestScan_ns = 1e5;
+constexpr std::int64_t kLatest_ns = 2'147'483'647'000'000'000;  // what a cloud's stamp can hold
 constexpr std::int64_t kAxisMemory_ns = 60'000'000'000;
 
 // A line on its way may be this late against the sequencer's word that the sweep is over.
@@ -24,13 +26,15 @@ bool well_formed(const msg::ScanLine& line) {
   return beams > 0 && beams <= kMostBeams && intensities_fit &&
          std::isfinite(line.first_beam_angle_deg()) && std::isfinite(line.beam_step_deg()) &&
          line.beam_period_ns() > 0.0 && line.scan_period_ns() < 1e10 &&
+         line.scan_period_ns() > kShortestScan_ns &&
          line.beam_period_ns() * static_cast<double>(beams - 1) < line.scan_period_ns() &&
-         line.beam0_time_ns() > 0;
+         line.beam0_time_ns() > 0 && line.beam0_time_ns() < kLatest_ns;
 }
 
 bool well_formed_window(const msg::Sweep& sweep) {
-  return sweep.lines_expected() > 0 && sweep.lines_expected() <= kMostLines &&
-         sweep.window_lines() > 0 && sweep.window_start_ns() < sweep.window_end_ns() &&
+  return sweep.sweep_id() != 0 && sweep.lines_expected() > 0 &&
+         sweep.lines_expected() <= kMostLines && sweep.window_lines() > 0 &&
+         sweep.window_start_ns() < sweep.window_end_ns() &&
          sweep.window_first_line() < sweep.lines_expected() &&
          sweep.window_lines() <= sweep.lines_expected() - sweep.window_first_line();
 }
@@ -47,7 +51,6 @@ Assembler::Assembler(const AssemblyOptions& options, std::function<void(Assemble
 
 void Assembler::add(const msg::ScanLine& line) {
   ++counters_.lines_received;
-  news_ = true;
   if (!well_formed(line)) {
     ++counters_.lines_rejected;
     return;
@@ -56,7 +59,11 @@ void Assembler::add(const msg::ScanLine& line) {
     ++counters_.lines_late;
     return;
   }
-  if (!waiting_.empty() && line.beam0_time_ns() <= waiting_.back().beam0_time_ns()) {
+  if (!waiting_.empty() && line.beam0_time_ns() == waiting_.back().beam0_time_ns()) {
+    ++counters_.lines_rejected;
+    return;
+  }
+  if (!waiting_.empty() && line.beam0_time_ns() < waiting_.back().beam0_time_ns()) {
     // The lidar's clock was set anew, or another reader took over.
     counters_.lines_outside += waiting_.size();
     waiting_.clear();
@@ -67,14 +74,27 @@ void Assembler::add(const msg::ScanLine& line) {
 }
 
 void Assembler::add(const msg::Axis& axis) {
-  for (const msg::AxisSample& sample : axis.samples()) {
-    if (axis_.add({sample.time_ns(), rad_from_deg(sample.angle_deg())}) != AxisAdded::kAdded) {
-      ++counters_.axis_samples_rejected;
-    }
+  if (axis.samples().empty()) return;
+  if ((axis.source() == msg::AXIS_MEASURED) != options_.axis_measured) {
+    counters_.axis_samples_rejected += axis.samples().size();
+    return;
   }
-  if (!axis.samples().empty())
-    axis_.forget_before(axis.samples().back().time_ns() - kAxisMemory_ns);
+  // A commanded turn that was cancelled had been told to its end; and over a lost message the
+  // track must not run straight. In both cases only what comes now is true.
+  const bool goes_back = axis.samples().front().time_ns() < last_axis_ns_;
+  const bool lost = last_axis_number_ != 0 && axis.sequence_number() > last_axis_number_ + 1;
+  if (goes_back || lost) axis_ = AxisTrack();
+  last_axis_number_ = axis.sequence_number();
+  for (const msg::AxisSample& sample : axis.samples()) add(sample);
+  if (last_axis_ns_ > kAxisMemory_ns) axis_.forget_before(last_axis_ns_ - kAxisMemory_ns);
   place_lines();
+}
+
+void Assembler::add(const msg::AxisSample& sample) {
+  const bool added =
+      axis_.add({sample.time_ns(), rad_from_deg(sample.angle_deg())}) == AxisAdded::kAdded;
+  if (added) last_axis_ns_ = sample.time_ns();
+  if (!added) ++counters_.axis_samples_rejected;
 }
 
 void Assembler::add(const msg::Sweep& sweep) {
@@ -82,51 +102,84 @@ void Assembler::add(const msg::Sweep& sweep) {
   if (sweep.phase() == msg::PHASE_CRUISING) {
     begin_or_extend(sweep);
   } else if (sweep.phase() == msg::PHASE_FAULT) {
-    abandon(sweep);
-  } else if (sweep_ && ends_sweep(sweep.phase())) {
-    ending_ = true;
+    abandon(sweep, "motor fault, do not use: " + sweep.reason());
+  } else if (ends_sweep(sweep.phase())) {
+    end(sweep);
   }
   place_lines();
 }
 
 void Assembler::begin_or_extend(const msg::Sweep& sweep) {
-  if (!well_formed_window(sweep)) return;
-  if (sweep_ && sweep_->id() == sweep.sweep_id()) return sweep_->add_window(sweep);
+  const bool well = well_formed_window(sweep);
+  const bool first = sweep.window_first_line() == 0;
+  if (well && sweep_ && !first && sweep.sweep_id() == sweep_->announced().sweep_id()) {
+    if (!sweep_->add_window(sweep)) ++counters_.windows_rejected;
+  } else if (!well) {
+    ++counters_.windows_rejected;
+  } else if (!told_before(sweep)) {
+    begin(sweep);
+  }
+}
+
+// As to a reader that was lost and found again.
+bool Assembler::told_before(const msg::Sweep& sweep) const {
+  const msg::Sweep& last = sweep_ ? sweep_->announced() : last_closed_;
+  return sweep.sweep_id() == last.sweep_id() &&
+         (sweep.window_first_line() != 0 || sweep.window_start_ns() == last.window_start_ns());
+}
+
+void Assembler::begin(const msg::Sweep& sweep) {
   if (sweep_) close("the next sweep began before the last line was in");
-  if (sweep.sweep_id() == last_closed_.sweep_id()) return;  // told again to a late reader
   sweep_ = std::make_unique<SweepInProgress>(options_, sweep);
   ending_ = false;
 }
 
-// The shaft may have stood still for some time before the fault was seen: no line of the sweep
+// A reason says that the turn ended early. After the window was left without one, it is told of
+// what comes after the sweep.
+void Assembler::end(const msg::Sweep& sweep) {
+  const bool cut_short = !sweep.reason().empty() && !ending_;
+  if (!cut_short) {
+    ending_ = true;
+  } else if (sweep_ || sweep.time_ns() < last_used_ns_) {
+    abandon(sweep, "ended early, do not use: " + sweep.reason());
+  }
+}
+
+// The shaft may have stood still for some time before a fault was seen: no line of the sweep
 // can be trusted, not even when all of them are in.
-void Assembler::abandon(const msg::Sweep& fault) {
-  const bool just_closed = !sweep_ && fault.sweep_id() != 0 &&
-                           fault.sweep_id() == last_closed_.sweep_id() && last_closed_.complete();
-  if (!just_closed && (!sweep_ || (fault.sweep_id() != 0 && fault.sweep_id() != sweep_->id())))
-    return;
-  msg::Sweep summary = just_closed ? last_closed_ : sweep_->summary("");
+void Assembler::abandon(const msg::Sweep& ended, const std::string& why) {
+  const bool open =
+      sweep_ && (ended.sweep_id() == 0 || ended.sweep_id() == sweep_->announced().sweep_id());
+  const bool just_closed = !sweep_ && ended.sweep_id() != 0 &&
+                           ended.sweep_id() == last_closed_.sweep_id() && last_closed_.complete();
+  if (!open && !just_closed) return;
+  msg::Sweep summary = open ? sweep_->summary(why) : last_closed_;
   summary.complete(false);
   summary.lines_used(0);
   summary.lines_missing(summary.lines_expected());
-  summary.reason("motor fault, do not use: " + fault.reason());
+  summary.reason(why);
   sweep_.reset();
   last_closed_ = summary;
+  // Later lines may be those of the next sweep.
+  last_closed_.window_end_ns(std::min(summary.window_end_ns(), ended.time_ns()));
   ++counters_.sweeps_incomplete;
-  on_sweep_({summary, {}});
+  on_sweep_({std::move(summary), {}});
 }
 
-bool Assembler::angles_known(const msg::ScanLine& line) const {
-  return options_.timing == Timing::kEq7 ||
-         axis_.covers(line.beam0_time_ns(), last_beam_time_ns(line));
+bool Assembler::lacks_angles() const {
+  if (options_.timing == Timing::kEq7 || waiting_.empty()) return false;
+  const msg::ScanLine& line = waiting_.front();
+  return sweep_->takes(line) && !axis_.covers(line.beam0_time_ns(), last_beam_time_ns(line));
 }
 
 void Assembler::place_lines() {
-  while (sweep_ && !waiting_.empty() && !sweep_->waits_for_window()) {
-    if (sweep_->spans(waiting_.front()) && !angles_known(waiting_.front())) return;
+  while (sweep_ && !waiting_.empty()) {
+    sweep_->leave_windows_before(waiting_.front());
+    if (sweep_->is_over()) return close("");
+    if (sweep_->waits_for_window() || lacks_angles()) return;
     place(waiting_.front());
     waiting_.pop_front();
-    if (sweep_->last_line_is_in()) close("");
+    if (sweep_->is_over()) close("");
   }
 }
 
@@ -134,8 +187,10 @@ void Assembler::place(const msg::ScanLine& line) {
   switch (sweep_->place(line, axis_)) {
     case SweepInProgress::Fate::kPlaced:
       ++counters_.lines_used;
+      news_ = true;
+      last_used_ns_ = last_beam_time_ns(line);
       break;
-    case SweepInProgress::Fate::kOtherShape:
+    case SweepInProgress::Fate::kRefused:
       ++counters_.lines_rejected;
       break;
     case SweepInProgress::Fate::kBeforeWindow:
@@ -166,10 +221,12 @@ void Assembler::check(steady_clock::time_point now) {
   if (!ending_) ending_since_ = now;
   if (!sweep_) return;
   if (ending_ && now - ending_since_ > kGraceAfterSweep) {
-    close(
-        "the sweep is over and they did not come; is the lidar connected, does hokuyo_reader run?");
+    close("the sweep is over and " +
+          std::string(lacks_angles()
+                          ? "their axis angles did not come; does what publishes swivel/axis run?"
+                          : "they did not come; is the lidar connected, does hokuyo_reader run?"));
   } else if (now - last_news_ > kSilence) {
-    close("neither lidar nor sequencer has been heard for 5 s");
+    close("for 5 s no line could be used and the sequencer said nothing");
   }
 }
 

@@ -1,8 +1,14 @@
 #include "components/cloud_assembler/sweep_in_progress.hpp"
 
+#include <cassert>
 #include <cmath>
 
 namespace swivel {
+namespace {
+
+constexpr std::size_t kMostPoints = 1U << 24;  // 256 MiB, 24 times a cloud of mode 7
+
+}  // namespace
 
 std::int64_t last_beam_time_ns(const msg::ScanLine& line) {
   const double beams = static_cast<double>(line.ranges_mm().size());
@@ -13,19 +19,34 @@ SweepInProgress::SweepInProgress(const AssemblyOptions& options, const msg::Swee
     : options_(options),
       announced_(sweep),
       lines_expected_(sweep.lines_expected()),
-      last_end_ns_(sweep.window_end_ns()) {
+      last_end_ns_(sweep.window_start_ns()) {
   add_window(sweep);
 }
 
-void SweepInProgress::add_window(const msg::Sweep& sweep) {
+bool SweepInProgress::add_window(const msg::Sweep& sweep) {
+  if (sweep.window_start_ns() < last_end_ns_ || sweep.window_first_line() < rows_announced_ ||
+      sweep.lines_expected() != lines_expected_) {
+    return false;
+  }
   windows_.push_back({sweep.window_start_ns(), sweep.window_end_ns(), sweep.window_first_line(),
                       sweep.window_lines()});
   last_end_ns_ = sweep.window_end_ns();
+  rows_announced_ = windows_.back().first_row + windows_.back().rows;
+  return true;
 }
 
-bool SweepInProgress::spans(const msg::ScanLine& line) const {
-  return line.beam0_time_ns() >= announced_.window_start_ns() &&
-         last_beam_time_ns(line) <= last_end_ns_;
+void SweepInProgress::leave_windows_before(const msg::ScanLine& line) {
+  while (!windows_.empty() && last_beam_time_ns(line) > windows_.front().end_ns) leave_window();
+}
+
+void SweepInProgress::leave_window() {
+  windows_.erase(windows_.begin());
+  previous_in_window_ = false;
+}
+
+bool SweepInProgress::takes(const msg::ScanLine& line) const {
+  return !windows_.empty() && line.beam0_time_ns() >= windows_.front().start_ns &&
+         last_beam_time_ns(line) <= windows_.front().end_ns;
 }
 
 bool SweepInProgress::fits(const msg::ScanLine& line) const {
@@ -35,46 +56,43 @@ bool SweepInProgress::fits(const msg::ScanLine& line) const {
 }
 
 SweepInProgress::Fate SweepInProgress::place(const msg::ScanLine& line, const AxisTrack& axis) {
-  while (!windows_.empty() && last_beam_time_ns(line) > windows_.front().end_ns) {
-    windows_.erase(windows_.begin());
-    previous_in_window_ = false;
-  }
-  if (windows_.empty()) return Fate::kBeyondWindow;
+  assert(!windows_.empty());
   if (line.beam0_time_ns() < windows_.front().start_ns) return Fate::kBeforeWindow;
-  if (!assembler_) begin(line, axis);
-  if (!fits(line)) return Fate::kOtherShape;
+  if (!assembler_ && !begin(line, axis)) return Fate::kRefused;
+  const std::optional<std::size_t> row = row_of(line);
+  if (!fits(line) || !row) return Fate::kRefused;
 
-  const std::size_t row = row_of(line);
   const std::size_t end_row = windows_.front().first_row + windows_.front().rows;
-  if (row < end_row) write_row(row, line, axis);
-  next_row_ = row + 1;
+  const bool inside = *row < end_row;
+  if (inside) write_row(*row, line, axis);
+  previous_row_ = *row;
   previous_time_ns_ = line.beam0_time_ns();
   previous_in_window_ = true;
-  if (next_row_ >= end_row) {
-    windows_.erase(windows_.begin());
-    previous_in_window_ = false;
-  }
-  return row < end_row ? Fate::kPlaced : Fate::kBeyondWindow;
+  if (*row + 1 >= end_row) leave_window();
+  return inside ? Fate::kPlaced : Fate::kBeyondWindow;
 }
 
-// Counted from the line before, so that an error of the period does not add up.
-std::size_t SweepInProgress::row_of(const msg::ScanLine& line) const {
+// Counted from the line before, so that an error of the period does not add up. None for a line
+// that came twice, or a clock that was set back.
+std::optional<std::size_t> SweepInProgress::row_of(const msg::ScanLine& line) const {
   if (!previous_in_window_) return windows_.front().first_row;
   const double periods =
       static_cast<double>(line.beam0_time_ns() - previous_time_ns_) / line.scan_period_ns();
-  const auto lines = std::max(1LL, std::llround(periods));
-  return next_row_ - 1 + static_cast<std::size_t>(lines);
+  if (periods < 0.5) return std::nullopt;
+  return previous_row_ + static_cast<std::size_t>(std::llround(periods));
 }
 
-void SweepInProgress::begin(const msg::ScanLine& line, const AxisTrack& axis) {
+bool SweepInProgress::begin(const msg::ScanLine& line, const AxisTrack& axis) {
+  if (lines_expected_ * line.ranges_mm().size() > kMostPoints) return false;
   assembler_.emplace(ForwardModel(options_.geometry, rad_from_deg(line.first_beam_angle_deg()),
                                   rad_from_deg(line.beam_step_deg()), line.ranges_mm().size()));
   cloud_ = OrganisedCloud(lines_expected_, line.ranges_mm().size());
   first_line_ = line;
-  if (options_.axis_measured) return;
+  if (options_.axis_measured) return true;
   const bool first_row = windows_.front().first_row == 0;
   const std::int64_t origin_ns = first_row ? line.beam0_time_ns() : announced_.window_start_ns();
   first_angle_rad_ = axis.angle_at(origin_ns).value_or(0.0);
+  return true;
 }
 
 void SweepInProgress::write_row(std::size_t row, const msg::ScanLine& line, const AxisTrack& axis) {
@@ -103,6 +121,7 @@ void SweepInProgress::write_row(std::size_t row, const msg::ScanLine& line, cons
 msg::Sweep SweepInProgress::summary(const std::string& reason) const {
   msg::Sweep summary = announced_;
   summary.phase(msg::PHASE_ASSEMBLED);
+  summary.window_end_ns(last_end_ns_);
   summary.first_beam_time_ns(first_line_.beam0_time_ns());
   summary.first_device_stamp_ms(first_line_.device_stamp_ms());
   summary.lines_used(static_cast<std::uint32_t>(lines_used_));

@@ -25,23 +25,26 @@ struct AssemblyOptions {
 
 class SweepInProgress {
  public:
-  enum class Fate { kPlaced, kBeforeWindow, kBeyondWindow, kOtherShape };
+  // kRefused: of another shape than the sweep's first line, told twice, or too large a cloud.
+  enum class Fate { kPlaced, kBeforeWindow, kBeyondWindow, kRefused };
 
   // sweep: the message that announced the sweep's first window.
   SweepInProgress(const AssemblyOptions& options, const msg::Sweep& sweep);
 
-  void add_window(const msg::Sweep& sweep);
+  // False if it does not continue the windows before it.
+  bool add_window(const msg::Sweep& sweep);
 
-  // line must not be before one that was placed; axis must cover it.
+  // Gives up the windows that line, and so every later one, is too late for.
+  void leave_windows_before(const msg::ScanLine& line);
+  // Whether line lies wholly inside the window that is open.
+  bool takes(const msg::ScanLine& line) const;
+  // A window must be open; axis must cover the line if it takes it.
   Fate place(const msg::ScanLine& line, const AxisTrack& axis);
 
-  bool last_line_is_in() const { return next_row_ >= lines_expected_; }
   // Every line of the windows announced so far is in, or its time is over.
   bool waits_for_window() const { return windows_.empty(); }
-  std::uint64_t id() const { return announced_.sweep_id(); }
-  std::size_t lines_used() const { return lines_used_; }
-  // From the first window's start to the last one's end.
-  bool spans(const msg::ScanLine& line) const;
+  bool is_over() const { return windows_.empty() && rows_announced_ >= lines_expected_; }
+  const msg::Sweep& announced() const { return announced_; }
 
   // What is known of the sweep now, as PHASE_ASSEMBLED.
   msg::Sweep summary(const std::string& reason) const;
@@ -55,22 +58,24 @@ class SweepInProgress {
     std::size_t rows;
   };
 
+  void leave_window();
   bool fits(const msg::ScanLine& line) const;
-  std::size_t row_of(const msg::ScanLine& line) const;
-  void begin(const msg::ScanLine& line, const AxisTrack& axis);
+  std::optional<std::size_t> row_of(const msg::ScanLine& line) const;
+  bool begin(const msg::ScanLine& line, const AxisTrack& axis);
   void write_row(std::size_t row, const msg::ScanLine& line, const AxisTrack& axis);
 
   AssemblyOptions options_;
   msg::Sweep announced_;
   std::size_t lines_expected_;
   std::vector<Window> windows_;  // still open, in order of time
-  std::int64_t last_end_ns_;
+  std::int64_t last_end_ns_;     // of the windows announced so far, and the rows in them
+  std::size_t rows_announced_ = 0;
   std::optional<LineAssembler> assembler_;  // once the first line told the lidar's shape
   msg::ScanLine first_line_;
-  double first_angle_rad_ = 0.0;  // the axis angle that is 0 in frame O'
+  double first_angle_rad_ = 0.0;     // the axis angle that is 0 in frame O'
+  bool previous_in_window_ = false;  // the line before was in the window that is open
   std::int64_t previous_time_ns_ = 0;
-  bool previous_in_window_ = false;
-  std::size_t next_row_ = 0;
+  std::size_t previous_row_ = 0;
   std::size_t lines_used_ = 0;
   OrganisedCloud cloud_;
 };
