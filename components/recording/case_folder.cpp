@@ -28,7 +28,7 @@ Result<LineReader> line_reader(const std::string& folder, std::size_t lines, std
   };
   const auto files = std::make_shared<Files>(Files{std::move(*ranges), std::move(*intensities)});
   return LineReader([files](msg::ScanLine& line) -> Outcome {
-    if (const Outcome read = files->ranges.read(line.ranges_mm()); !read) return read;
+    if (Outcome read = files->ranges.read(line.ranges_mm()); !read) return read;
     std::replace(line.ranges_mm().begin(), line.ranges_mm().end(), std::uint16_t{0}, kNoReturn);
     return files->intensities.read(line.intensities());
   });

@@ -95,7 +95,7 @@ Outcome Recording::Player::play_line() {
   line.beam0_time_ns(recorded.beam0_time_ns);
   line.arrival_time_ns(recorded.arrival_time_ns);
   line.device_stamp_ms(recorded.device_stamp_ms);
-  if (const Outcome read = plan_.read_line(line); !read) return read;
+  if (Outcome read = plan_.read_line(line); !read) return read;
   send(std::move(line), recorded.arrival_time_ns);
 
   ++line_;
