@@ -90,12 +90,21 @@ msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud)
   attitude.estimator(rig_.estimator);
   attitude.alpha_deg(alpha_deg_);
   attitude.calibrated(calibrated_);
-  fill((*estimator_)(cloud, *rig_.plate), attitude);
+  fill(estimate(cloud), attitude);
   if (attitude.verdict() == msg::VERDICT_GOOD) {
     transform_cloud(base_from_start(rig_.geometry, rad_from_deg(attitude.phi_offset_deg())), cloud);
     if (sweep.lines_missing() > 0) attitude.reason("the plate is whole; " + sweep.reason());
   }
   return attitude;
+}
+
+// The estimator looks along the axis, wherever that stands in the base.
+AttitudeEstimate Corrector::estimate(const OrganisedCloud& cloud) const {
+  const Eigen::Isometry3d& T_base_axis = rig_.geometry.T_base_axis;
+  if (T_base_axis.isApprox(Eigen::Isometry3d::Identity())) return (*estimator_)(cloud, *rig_.plate);
+  OrganisedCloud about_axis = cloud;
+  transform_cloud(T_base_axis.inverse(), about_axis);
+  return (*estimator_)(about_axis, *rig_.plate);
 }
 
 void Corrector::fill(const AttitudeEstimate& estimate, msg::Attitude& attitude) const {

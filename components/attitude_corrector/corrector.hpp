@@ -29,6 +29,7 @@ class Corrector {
   }
 
  private:
+  AttitudeEstimate estimate(const OrganisedCloud& cloud) const;
   void fill(const AttitudeEstimate& estimate, msg::Attitude& attitude) const;
 
   RigFile rig_;
