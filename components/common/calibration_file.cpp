@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "components/common/strict_yaml.hpp"
@@ -15,6 +17,7 @@
 namespace swivel {
 namespace {
 
+constexpr int kAllDigits = std::numeric_limits<double>::max_digits10;
 constexpr Range kAnyAngle{-360.0, 360.0};
 constexpr Range kAnyLength{-1e5, 1e5};
 constexpr Range kAnyCovariance{-1e12, 1e12};
@@ -32,7 +35,7 @@ std::string date_of(std::int64_t time_ns) {
 template <class Values>
 std::string list_of(const Values& values) {
   std::ostringstream text;
-  text.precision(12);
+  text.precision(kAllDigits);
   for (const double value : values) text << (text.tellp() == 0 ? "[" : ", ") << value;
   return text.str() + "]";
 }
@@ -49,7 +52,7 @@ std::string quoted(const std::string& words) {
 
 std::string to_yaml(const msg::Calibration& calibration) {
   std::ostringstream yaml;
-  yaml.precision(12);
+  yaml.precision(kAllDigits);
   yaml << "# A calibration of Swivel. Angles in deg, lengths in mm.\n"
        << "rig: " << calibration.rig().to_string() << "\n"
        << "date: " << quoted(date_of(calibration.time_ns())) << "\n"
@@ -70,9 +73,15 @@ std::string to_yaml(const msg::Calibration& calibration) {
   return yaml.str();
 }
 
+// A double has not digits enough.
 std::int64_t read_time_ns(YamlSection& file) {
   file.number("time_ns", kNanoseconds);
-  return std::stoll(file.text("time_ns"));  // a double has not digits enough
+  const std::string text = file.text("time_ns");
+  std::int64_t time_ns = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, time_ns);
+  if (error != std::errc() || stop != end) file.refuse("time_ns", "must be a whole number");
+  return time_ns;
 }
 
 }  // namespace

@@ -47,8 +47,10 @@ std::string base_frame(const std::string& rig) {
 
 void to_message(const OrganisedCloud& cloud, std::int64_t first_beam_time_ns,
                 const std::string& frame_id, PointCloud2Message& message) {
-  message.header().stamp().sec(static_cast<std::int32_t>(first_beam_time_ns / kSecond_ns));
-  message.header().stamp().nanosec(static_cast<std::uint32_t>(first_beam_time_ns % kSecond_ns));
+  const std::int64_t part_ns = (first_beam_time_ns % kSecond_ns + kSecond_ns) % kSecond_ns;
+  const std::int64_t whole_s = (first_beam_time_ns - part_ns) / kSecond_ns;
+  message.header().stamp().sec(static_cast<std::int32_t>(whole_s));
+  message.header().stamp().nanosec(static_cast<std::uint32_t>(part_ns));
   message.header().frame_id(frame_id);
   message.height(static_cast<std::uint32_t>(cloud.lines));
   message.width(static_cast<std::uint32_t>(cloud.beams));

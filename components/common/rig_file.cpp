@@ -93,7 +93,7 @@ ModesSection read_modes(YamlSection section) {
   YamlSection lines = section.section("lines");
   for (const std::string& key : lines.keys()) {
     const bool whole =
-        !key.empty() && key.size() <= 3 &&
+        !key.empty() && key.size() <= 3 && key[0] != '0' &&
         std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; });
     const int mode = whole ? std::stoi(key) : 0;
     if (mode < 1 || mode > 255) lines.refuse(key, "a mode is a number from 1 to 255");

@@ -14,12 +14,14 @@ constexpr std::size_t kLargestFile = 1 << 20;
 std::string read_whole(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw ConfigurationError(path + ": cannot be read; does it exist?");
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (text.str().size() > kLargestFile) {
+  std::string text(kLargestFile + 1, '\0');  // no more, should it be a device without an end
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) throw ConfigurationError(path + ": cannot be read; is it a file?");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargestFile) {
     throw ConfigurationError(path + ": larger than 1 MiB; is this the right file?");
   }
-  return text.str();
+  return text;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -33,6 +35,12 @@ std::string without_unit(const std::string& key) {
   return key.substr(0, key.rfind('_'));
 }
 
+bool looks_octal(const std::string& number) {
+  const std::size_t first = number.find_first_not_of("-+");
+  return first != std::string::npos && first + 1 < number.size() && number[first] == '0' &&
+         number[first + 1] >= '0' && number[first + 1] <= '9';
+}
+
 std::string shortest(double value) {
   std::ostringstream text;
   text << value;
@@ -44,8 +52,14 @@ std::string shortest(double value) {
 YamlSection YamlSection::load(const std::string& path) {
   const std::string text = read_whole(path);
   try {
-    return {YAML::Load(text), path, ""};
-  } catch (const YAML::ParserException& error) {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty()) throw ConfigurationError(path + ":1: the file is empty");
+    if (documents.size() > 1) {
+      throw ConfigurationError(path + ":" + std::to_string(documents[1].Mark().line + 1) +
+                               ": a second document begins; only one can be read");
+    }
+    return {documents[0], path, ""};
+  } catch (const YAML::Exception& error) {
     throw ConfigurationError(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
 }
@@ -88,9 +102,7 @@ std::optional<YamlSection> YamlSection::section_if_present(const std::string& ke
 
 YAML::Node YamlSection::scalar(const std::string& key) {
   known_.insert(key);
-  if (!has(key)) {
-    refuse_at(mark_, "'" + key + "' is missing" + (name_.empty() ? "" : " in '" + name_ + "'"));
-  }
+  if (!has(key)) refuse_missing(key);
   const YAML::Node& node = entries_.at(key);
   if (!node.IsScalar()) refuse(key, "must be a single value");
   return node;
@@ -99,13 +111,11 @@ YAML::Node YamlSection::scalar(const std::string& key) {
 double YamlSection::parse_number(const std::string& key, const YAML::Node& node,
                                  Range range) const {
   const std::string& text = node.IsScalar() ? node.Scalar() : std::string();
-  const std::size_t first_digit = text.find_first_not_of("-+");
-  const bool octal_looking = first_digit != std::string::npos && text[first_digit] == '0' &&
-                             first_digit + 1 < text.size() && std::isdigit(text[first_digit + 1]);
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, value);
-  if (text.empty() || error != std::errc() || stop != end || octal_looking ||
+  const bool two_signs = text.substr(0, 2) == "+-";
+  if (text.empty() || error != std::errc() || stop != end || two_signs || looks_octal(text) ||
       !std::isfinite(value)) {
     refuse(key, "must be a plain decimal number, not '" + text + "'");
   }
@@ -138,7 +148,7 @@ int YamlSection::integer(const std::string& key, Range range, int when_absent) {
 
 std::vector<double> YamlSection::numbers(const std::string& key, std::size_t count, Range range) {
   known_.insert(key);
-  if (!has(key)) refuse_at(mark_, "'" + key + "' is missing");
+  if (!has(key)) refuse_missing(key);
   const YAML::Node& node = entries_.at(key);
   if (!node.IsSequence() || node.size() != count) {
     refuse(key, "must be a list of " + std::to_string(count) + " numbers");
@@ -183,6 +193,15 @@ void YamlSection::finish() const {
     }
     refuse(key, "is not a known key" + hint);
   }
+}
+
+void YamlSection::refuse_missing(const std::string& key) const {
+  for (const std::string& other : order_) {
+    if (without_unit(other) == without_unit(key)) {
+      refuse(other, "is not a known key; did you mean '" + key + "'?");
+    }
+  }
+  refuse_at(mark_, "'" + key + "' is missing" + (name_.empty() ? "" : " in '" + name_ + "'"));
 }
 
 void YamlSection::refuse(const std::string& key, const std::string& what) const {

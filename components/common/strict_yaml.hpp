@@ -53,6 +53,7 @@ class YamlSection {
   YamlSection(const YAML::Node& node, std::string path, std::string name);
   YAML::Node scalar(const std::string& key);
   double parse_number(const std::string& key, const YAML::Node& node, Range range) const;
+  [[noreturn]] void refuse_missing(const std::string& key) const;
   [[noreturn]] void refuse_at(const YAML::Mark& mark, const std::string& what) const;
 
   std::map<std::string, YAML::Node> entries_;
