@@ -1,5 +1,7 @@
 #include "components/alpha_calibrator/calibrator.hpp"
 
+#include <cmath>
+
 #include "components/common/cloud_message.hpp"
 #include "hardware/io/clock.hpp"
 
@@ -8,6 +10,7 @@ namespace {
 
 // The longest that a whole sweep of any mode and its way through the pipeline take.
 constexpr auto kPatience = std::chrono::seconds(120);
+constexpr std::size_t kMostWaiting = 16;
 
 }  // namespace
 
@@ -15,13 +18,15 @@ Calibrator::Calibrator(const RigFile& rig, Outputs outputs)
     : rig_(rig), outputs_(std::move(outputs)), requester_(outputs_.request_sweeps) {}
 
 void Calibrator::take(const msg::CalibrationRequest& request) {
-  if (request.request_id() == last_request_id_) return;  // repeated until it is answered
-  if (run_) {
-    msg::CalibrationProgress busy;
-    busy.request_id(request.request_id());
-    busy.state(msg::CALIBRATION_REFUSED);
-    busy.words("busy with another calibration; try again when it is done");
-    return outputs_.tell(busy);
+  const bool repeated = request.request_id() != 0 && request.request_id() == last_request_id_;
+  if (repeated) return;  // as it is until it is answered
+  const std::string wrong = why_not_taken(request);
+  if (!wrong.empty()) {
+    msg::CalibrationProgress refusal;
+    refusal.request_id(request.request_id());
+    refusal.state(msg::CALIBRATION_REFUSED);
+    refusal.words(wrong);
+    return outputs_.tell(refusal);
   }
   last_request_id_ = request.request_id();
   run_.emplace(Run{AlphaCalibration(rig_, request.room_yaw_deg()),
@@ -37,11 +42,22 @@ void Calibrator::take(const msg::CalibrationRequest& request) {
   requester_.request(request.request_id(), request.mode(), request.count());
 }
 
+std::string Calibrator::why_not_taken(const msg::CalibrationRequest& request) const {
+  if (run_) return "busy with another calibration; try again when it is done";
+  if (request.request_id() == 0) return "the request has no id; choose one that is not 0";
+  if (request.count() == 0) return "no sweep is asked for; ask for some, 3 at least";
+  if (!std::isfinite(request.room_yaw_deg())) return "the room's yaw is not a number";
+  return {};
+}
+
 void Calibrator::take(const msg::Sweep& sweep) {
   if (!run_ || !requester_.saw(sweep)) return;
   news_ = true;
   if (sweep.phase() == msg::PHASE_REFUSED) return refuse("no sweep: " + sweep.reason());
   if (sweep.phase() == msg::PHASE_FAULT) return refuse("motor fault: " + sweep.reason());
+  if (sweep.phase() == msg::PHASE_IDLE && !sweep.reason().empty()) {
+    return refuse("the sweeps ended early: " + sweep.reason());
+  }
   if (sweep.sweep_id() != 0) run_->sweeps.insert(sweep.sweep_id());
   if (sweep.phase() == msg::PHASE_ASSEMBLED && sweep.lines_used() == 0) {
     leave_out(sweep.sweep_id(), sweep.reason());
@@ -51,21 +67,26 @@ void Calibrator::take(const msg::Sweep& sweep) {
 void Calibrator::take(const msg::Attitude& attitude) {
   if (!run_) return;
   run_->attitudes[attitude.first_beam_time_ns()] = attitude;
+  if (run_->attitudes.size() > kMostWaiting) run_->attitudes.erase(run_->attitudes.begin());
   match();
 }
 
 void Calibrator::take(const PointCloud2Message& raw_cloud) {
   if (!run_) return;
-  cloud_stamp_ns_ = from_message(raw_cloud, cloud_).empty() ? stamp_ns(raw_cloud) : 0;
+  cloud_stamp_ns_.reset();
+  if (!from_message(raw_cloud, cloud_).empty()) return;
+  cloud_stamp_ns_ = stamp_ns(raw_cloud);
   match();
 }
 
 void Calibrator::match() {
-  const auto found = run_->attitudes.find(cloud_stamp_ns_);
+  if (!cloud_stamp_ns_) return;
+  const auto found = run_->attitudes.find(*cloud_stamp_ns_);
   if (found == run_->attitudes.end()) return;
   const msg::Attitude attitude = found->second;
   run_->attitudes.erase(run_->attitudes.begin(), std::next(found));
   if (run_->sweeps.count(attitude.sweep_id()) == 0) return;
+  if (run_->done.count(attitude.sweep_id()) != 0) return;
   const AlphaCalibration::Added added = run_->calibration.add(attitude, cloud_);
   if (!added.used) return leave_out(attitude.sweep_id(), added.words);
   count(attitude.sweep_id(), added.words);
@@ -99,12 +120,13 @@ void Calibrator::check(std::chrono::steady_clock::time_point now) {
   if (!requester_.check(now)) {
     refuse("stepper_sequencer does not answer; does it run? see: swivel status");
   } else if (now - last_news_ > kPatience) {
+    requester_.cancel();
     refuse("no sweep for 2 minutes; see: swivel status");
   }
 }
 
+// A cancel stops whatever is under way, so only who sees that his own request hangs sends one.
 void Calibrator::refuse(const std::string& why) {
-  requester_.cancel();
   tell(msg::CALIBRATION_REFUSED, why);
   run_.reset();
 }

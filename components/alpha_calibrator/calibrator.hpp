@@ -48,6 +48,7 @@ class Calibrator {
     std::map<std::int64_t, msg::Attitude> attitudes;  // by stamp, until their cloud is here
   };
 
+  std::string why_not_taken(const msg::CalibrationRequest& request) const;
   void match();
   void leave_out(std::uint64_t sweep_id, const std::string& why);
   void count(std::uint64_t sweep_id, const std::string& words);
@@ -62,7 +63,7 @@ class Calibrator {
   std::optional<Run> run_;
   std::uint64_t last_request_id_ = 0;
   OrganisedCloud cloud_;  // the last one, and its stamp
-  std::int64_t cloud_stamp_ns_ = 0;
+  std::optional<std::int64_t> cloud_stamp_ns_;
   bool news_ = false;
   std::chrono::steady_clock::time_point last_news_{};
 };
