@@ -88,7 +88,7 @@ TEST_F(CalibrationFile, HalfOfOneIsRefused) {
   std::ostringstream whole;
   whole << std::ifstream(path).rdbuf();
   const std::string text = whole.str();
-  for (std::size_t length = 0; length + 1 < text.size(); length += 3) {
+  for (std::size_t length = 0; length + 1 < text.size(); length += 11) {
     EXPECT_THROW(load_calibration(write(text.substr(0, length))), ConfigurationError) << length;
   }
 }

@@ -150,7 +150,7 @@ TEST_F(WrittenFile, DamagedBytesDoNoHarm) {
   unsigned state = 12345;
   const auto random = [&state] { return state = state * 1664525U + 1013904223U, state >> 8U; };
   int refused = 0;
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < 400; ++round) {
     std::string text = whole;
     for (int change = 0; change < 3; ++change)
       text[random() % text.size()] = static_cast<char>(random());
@@ -158,7 +158,7 @@ TEST_F(WrittenFile, DamagedBytesDoNoHarm) {
     refused += said == "it was taken" ? 0 : 1;
     ASSERT_TRUE(said == "it was taken" || said.find(path_) == 0) << said;
   }
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 50);
 }
 
 }  // namespace
