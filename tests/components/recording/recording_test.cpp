@@ -190,6 +190,7 @@ TEST(PlateCase, TheCounterMayWrapInsideASweep) {
   }
   write_file(scratch.file("lines.csv"), joined(lines));
   const Played plain = play(test_recording("plate_period")), wrapped = play(scratch.path());
+  ASSERT_EQ(wrapped.lines.size(), plain.lines.size());
   ASSERT_GT(wrapped.lines[0].device_stamp_ms(), wrapped.lines[39].device_stamp_ms());
   for (std::size_t line = 0; line < plain.lines.size(); ++line)
     EXPECT_EQ(wrapped.lines[line].beam0_time_ns(), plain.lines[line].beam0_time_ns());
