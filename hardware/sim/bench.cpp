@@ -9,8 +9,8 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kLongestWait_ns = 100'000'000;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kLongestWaitNs = 100'000'000;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 bool notified(const WakeUp& stop) {
   pollfd wait{stop.descriptor(), POLLIN, 0};
@@ -80,9 +80,9 @@ void Bench::wait(const WakeUp& stop) const {
   const std::int64_t until_ns =
       std::min(server_.next_event_ns(), stepper_port_.next_event_ns(time_ns));
   const std::int64_t wait_ns =
-      until_ns <= time_ns ? 0 : std::min(kLongestWait_ns, until_ns - time_ns);
-  const timespec timeout{static_cast<time_t>(wait_ns / kSecond_ns),
-                         static_cast<long>(wait_ns % kSecond_ns)};
+      until_ns <= time_ns ? 0 : std::min(kLongestWaitNs, until_ns - time_ns);
+  const timespec timeout{static_cast<time_t>(wait_ns / kSecondNs),
+                         static_cast<long>(wait_ns % kSecondNs)};
   ::ppoll(waits.data(), waits.size(), &timeout, nullptr);
 }
 

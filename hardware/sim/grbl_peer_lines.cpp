@@ -9,7 +9,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kAlarmSilence_ns = 500'000'000;
+constexpr std::int64_t kAlarmSilenceNs = 500'000'000;
 constexpr double kMmPerInch = 25.4;
 
 std::string upper_case_without_blanks(const std::string& line) {
@@ -92,11 +92,11 @@ double GrblPeer::target_deg(const GrblWords& words, bool absolute) const {
 }
 
 bool GrblPeer::beyond_travel(double target) const {
-  constexpr double kRounding_deg = 1e-6;
-  constexpr double kFarthest_deg = 1e6;  // beyond it GRBL's floats lose whole steps
-  if (std::abs(target) > kFarthest_deg) return true;
+  constexpr double kRoundingDeg = 1e-6;
+  constexpr double kFarthestDeg = 1e6;  // beyond it GRBL's floats lose whole steps
+  if (std::abs(target) > kFarthestDeg) return true;
   return settings_.soft_limits() &&
-         (target < -settings_.travel_deg() - kRounding_deg || target > kRounding_deg);
+         (target < -settings_.travel_deg() - kRoundingDeg || target > kRoundingDeg);
 }
 
 GrblError GrblPeer::execute_jog(std::string_view text, std::int64_t now_ns) {
@@ -128,7 +128,7 @@ GrblError GrblPeer::execute_motion(std::string_view text, std::int64_t now_ns) {
   if (beyond_travel(target)) {
     axis_.halt(now_ns);
     alarm(2);
-    quiet_until_ns_ = now_ns + kAlarmSilence_ns;
+    quiet_until_ns_ = now_ns + kAlarmSilenceNs;
     return kNoError;
   }
   if (target == axis_.planned_end_deg(settings_)) return kNoError;

@@ -16,7 +16,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kBusyTick_ns = 2'000'000;
+constexpr std::int64_t kBusyTickNs = 2'000'000;
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), what);
@@ -93,7 +93,7 @@ void GrblPort::add_to(std::vector<pollfd>& waits) const {
 }
 
 std::int64_t GrblPort::next_event_ns(std::int64_t now_ns) const {
-  if (peer_->busy(now_ns)) return now_ns + kBusyTick_ns;
+  if (peer_->busy(now_ns)) return now_ns + kBusyTickNs;
   return std::numeric_limits<std::int64_t>::max();
 }
 

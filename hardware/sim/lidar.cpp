@@ -7,14 +7,14 @@
 namespace swivel::sim {
 namespace {
 
-constexpr double kFadingLength_m = 0.3;
-constexpr double kEdge_m = 0.05;     // a step within the spot that makes an edge of it
+constexpr double kFadingLengthM = 0.3;
+constexpr double kEdgeM = 0.05;      // a step within the spot that makes an edge of it
 constexpr double kWeakest = 20.0;    // an echo that the sensor still sees
 constexpr double kBrightest = 4500;  // white, square, at arm's length
-constexpr double kHalfway_m = 4.0;   // where an echo is half as strong
+constexpr double kHalfwayM = 4.0;    // where an echo is half as strong
 
 double strength_of(const Hit& hit) {
-  const double distance = hit.distance_m / kHalfway_m;
+  const double distance = hit.distance_m / kHalfwayM;
   return kBrightest * hit.reflectivity * hit.cos_incidence / (1.0 + distance * distance);
 }
 
@@ -69,7 +69,7 @@ std::optional<Lidar::Echo> Lidar::echo_of_spot(const Ray& ray, Random& random) c
       std::minmax_element(echoes.begin(), echoes.end(),
                           [](const Echo& a, const Echo& b) { return a.distance_m < b.distance_m; });
   const double step_m = farthest->distance_m - nearest->distance_m;
-  if (step_m > kEdge_m && random.uniform() < options_.mixed_pixel_rate) {
+  if (step_m > kEdgeM && random.uniform() < options_.mixed_pixel_rate) {
     return Echo{nearest->distance_m + random.uniform() * step_m, nearest->strength};
   }
   return echoes[static_cast<std::size_t>(random.uniform() * static_cast<double>(echoes.size()))];
@@ -77,7 +77,7 @@ std::optional<Lidar::Echo> Lidar::echo_of_spot(const Ray& ray, Random& random) c
 
 double Lidar::measured_mm(double distance_m, Random& random) const {
   return distance_m * 1e3 + options_.range_bias_mm +
-         options_.near_bias_mm * std::exp(-distance_m / kFadingLength_m) +
+         options_.near_bias_mm * std::exp(-distance_m / kFadingLengthM) +
          options_.noise_mm * random.gaussian();
 }
 

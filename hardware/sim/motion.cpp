@@ -9,7 +9,7 @@ namespace swivel::sim {
 namespace {
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kKept_ns = 10'000'000'000;  // scan lines look back, but not this far
+constexpr std::int64_t kKeptNs = 10'000'000'000;  // scan lines look back, but not this far
 
 double seconds(std::int64_t duration_ns) {
   return static_cast<double>(duration_ns) * 1e-9;
@@ -61,7 +61,7 @@ void Motion::cut(std::int64_t now_ns) {
   const MotionPiece last = piece_at(now_ns);
   while (!pieces_.empty() && pieces_.back().start_ns >= now_ns) pieces_.pop_back();
   pieces_.push_back(continued(last, now_ns));
-  while (pieces_.size() > 2 && pieces_[1].start_ns < now_ns - kKept_ns) pieces_.pop_front();
+  while (pieces_.size() > 2 && pieces_[1].start_ns < now_ns - kKeptNs) pieces_.pop_front();
 }
 
 // Gives the last piece an acceleration and a duration, and begins the next one.

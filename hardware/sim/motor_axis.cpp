@@ -6,7 +6,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr double kSlowest_steps_s = 30.0;  // GRBL does not go slower, though it says so
+constexpr double kSlowestStepsS = 30.0;  // GRBL does not go slower, though it says so
 constexpr std::uint64_t kMotorStream = 0x4070;
 
 std::int64_t ns_from_s(double duration_s) {
@@ -27,7 +27,7 @@ void MotorAxis::move_to(double target_deg, double speed_deg_s, const GrblSetting
   Move move;
   move.target_steps = origin_steps_ + std::round(target_deg * settings.steps_per_deg());
   move.believed_speed_steps_s = believed;
-  move.speed_steps_s = std::max(believed, kSlowest_steps_s) * clock_gain();
+  move.speed_steps_s = std::max(believed, kSlowestStepsS) * clock_gain();
   const double acceleration = settings.acceleration_deg_s2() * settings.steps_per_deg();
   const double latency_ms =
       random_.uniform(options_.start_latency_min_ms, options_.start_latency_max_ms);

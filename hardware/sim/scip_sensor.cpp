@@ -8,7 +8,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::size_t kLongestRequest = 64;
 constexpr std::size_t kLongestString = 16;
 
@@ -170,7 +170,7 @@ std::string ScipSensor::initialise(const std::string& request, std::int64_t now_
 // The second RB within a second reboots.
 std::string ScipSensor::reboot(const std::string& request, std::int64_t now_ns) {
   if (now_ns > reboot_armed_until_ns_) {
-    reboot_armed_until_ns_ = now_ns + kSecond_ns;
+    reboot_armed_until_ns_ = now_ns + kSecondNs;
     return whole_reply(request, "01");
   }
   stop();

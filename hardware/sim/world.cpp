@@ -23,6 +23,7 @@ std::vector<Wall> walls_of(const RoomOptions& room) {
       {{0.0, 0.0, room.roof_mm * kMetre}, {0.0, 0.0, -1.0}, 0.85},
   };
   std::vector<Wall> walls;
+  walls.reserve(square.size());
   for (const Wall& wall : square) walls.push_back(turned(wall, room.yaw_deg * kRadPerDeg));
   return walls;
 }

@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string written(const std::string& text) {
-  const std::string path = ::testing::TempDir() + "bench_file_test.yaml";
+  std::string path = ::testing::TempDir() + "bench_file_test.yaml";
   std::ofstream(path) << text;
   return path;
 }

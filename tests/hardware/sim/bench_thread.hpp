@@ -67,7 +67,7 @@ class Client {
     const auto found = [&] { return received_.find(end) != std::string::npos; };
     if (!read_until(found, timeout_s)) return {};
     const std::size_t size = received_.find(end) + end.size();
-    const std::string taken = received_.substr(0, size);
+    std::string taken = received_.substr(0, size);
     received_.erase(0, size);
     return taken;
   }

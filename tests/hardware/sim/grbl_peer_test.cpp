@@ -155,6 +155,9 @@ TEST(GrblPeer, JogCancelSlowsDownAndForgetsTheRest) {
   EXPECT_NEAR(grbl.shaft_deg() - before, 22.5, 0.02);
   grbl.wait(2.0);
   EXPECT_NEAR(grbl.shaft_deg() - before, 22.5, 0.02);
+  grbl.send("$J=G91 X1 F10800\n");  // nothing of the cancelled moves comes back with it
+  grbl.wait_idle();
+  EXPECT_NEAR(grbl.shaft_deg() - before, 23.5, 0.03);
 }
 
 TEST(GrblPeer, HoldPausesAMoveAndEndsAJog) {

@@ -11,7 +11,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr double kBeamPeriod_ns = 25.0e6 / 1440.0;
+constexpr double kBeamPeriodNs = 25.0e6 / 1440.0;
 
 LidarOptions exact_lidar() {
   LidarOptions lidar;
@@ -30,7 +30,7 @@ WorldOptions empty_room() {
 LineReading standing_line(const WorldOptions& options, const LidarOptions& lidar, double phi_deg,
                           std::uint64_t seed = 1, std::uint64_t line = 0) {
   const World world(options);
-  return Lidar(lidar, world, seed).cast_line({line, 0, kBeamPeriod_ns}, [phi_deg](std::int64_t) {
+  return Lidar(lidar, world, seed).cast_line({line, 0, kBeamPeriodNs}, [phi_deg](std::int64_t) {
     return phi_deg * kRadPerDeg;
   });
 }
@@ -62,7 +62,7 @@ TEST(Lidar, StandsOnItsLeverArm) {
 TEST(Lidar, FiresEachBeamAtItsOwnInstant) {
   const World world(empty_room());
   std::vector<std::int64_t> times_ns;
-  Lidar(exact_lidar(), world, 1).cast_line({0, 1000, kBeamPeriod_ns}, [&](std::int64_t time_ns) {
+  Lidar(exact_lidar(), world, 1).cast_line({0, 1000, kBeamPeriodNs}, [&](std::int64_t time_ns) {
     times_ns.push_back(time_ns);
     return 0.0;
   });
@@ -248,7 +248,7 @@ TEST(Lidar, AgreesWithAnIndependentSimulatorOfTheRig) {
   int far_off = 0;
   for (std::size_t line = 0; line < 40; ++line) {
     const auto start_ns = static_cast<std::int64_t>(line) * 25'000'000;
-    const auto cast = lidar.cast_line({line, start_ns, kBeamPeriod_ns}, [](std::int64_t time_ns) {
+    const auto cast = lidar.cast_line({line, start_ns, kBeamPeriodNs}, [](std::int64_t time_ns) {
       return (3.380332375 + 180e-9 * static_cast<double>(time_ns)) * kRadPerDeg;
     });
     for (std::size_t beam = 0; beam < 1081; ++beam) {

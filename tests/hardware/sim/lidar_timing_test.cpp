@@ -7,22 +7,22 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
+constexpr std::int64_t kStartNs = 1'700'000'000'123'456'789;
 
 LidarTiming timing_of(const LidarTimingOptions& options) {
-  return {options, kStart_ns, 1440, 1080, 1};
+  return {options, kStartNs, 1440, 1080, 1};
 }
 
 TEST(LidarTiming, TurnsWithItsTruePeriod) {
   const LidarTiming timing = timing_of({});
-  EXPECT_EQ(timing.beam0_time_ns(0), kStart_ns);
-  EXPECT_EQ(timing.beam0_time_ns(1000) - kStart_ns, 25'040'000'000);
+  EXPECT_EQ(timing.beam0_time_ns(0), kStartNs);
+  EXPECT_EQ(timing.beam0_time_ns(1000) - kStartNs, 25'040'000'000);
   EXPECT_NEAR(timing.beam_period_ns() * 1440, 25.04e6, 1e-6);
 }
 
 TEST(LidarTiming, NextScanBeginsAtTheTimeOrLater) {
   const LidarTiming timing = timing_of({});
-  EXPECT_EQ(timing.next_scan(kStart_ns - 5), 0U);
+  EXPECT_EQ(timing.next_scan(kStartNs - 5), 0U);
   EXPECT_EQ(timing.next_scan(timing.beam0_time_ns(77)), 77U);
   EXPECT_EQ(timing.next_scan(timing.beam0_time_ns(77) + 1), 78U);
 }
@@ -42,7 +42,7 @@ TEST(LidarTiming, CounterRunsFastByItsGain) {
   LidarTimingOptions options;
   options.stamp_start_ms = 0.0;
   options.clock_gain_ppm = 1000.0;
-  EXPECT_EQ(timing_of(options).counter_ms(kStart_ns + 100'000'500'000), 100'100U);
+  EXPECT_EQ(timing_of(options).counter_ms(kStartNs + 100'000'500'000), 100'100U);
 }
 
 TEST(LidarTiming, RearCentreIsAnEighthOfATurnEarlier) {
@@ -65,7 +65,7 @@ TEST(LidarTiming, SendsOnTheTickAfterTheLastBeamAndInOrder) {
         static_cast<double>(sent_ns - timing.beam0_time_ns(scan)) * 1e-6 - 18.78;
     ASSERT_GE(after_last_ms, 0.4);
     ASSERT_LE(after_last_ms, 1.8);
-    const double in_tick_ms = std::fmod(static_cast<double>(sent_ns - kStart_ns) * 1e-6, 1.0);
+    const double in_tick_ms = std::fmod(static_cast<double>(sent_ns - kStartNs) * 1e-6, 1.0);
     ASSERT_GE(in_tick_ms, 0.399);
     ASSERT_LE(in_tick_ms, 0.801);
     ASSERT_GT(sent_ns, before_ns);
@@ -75,8 +75,8 @@ TEST(LidarTiming, SendsOnTheTickAfterTheLastBeamAndInOrder) {
 
 TEST(LidarTiming, ResetStartsTheCounterAnew) {
   LidarTiming timing = timing_of({});
-  timing.reset_counter(kStart_ns + 5'000'000'000);
-  EXPECT_EQ(timing.counter_ms(kStart_ns + 5'007'500'000), 7U);
+  timing.reset_counter(kStartNs + 5'000'000'000);
+  EXPECT_EQ(timing.counter_ms(kStartNs + 5'007'500'000), 7U);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 Move move(double target, double speed) {
   return {target, speed, speed, 0};
@@ -19,13 +19,13 @@ Move move(double target, double speed) {
 TEST(Motion, IsATrapezoid) {
   Motion motion(0);
   motion.add(move(1000, 1000), 4000, 0, 0);
-  EXPECT_NEAR(motion.position_at(kSecond_ns / 4), 125.0, 1e-6);
-  EXPECT_NEAR(motion.speed_at(kSecond_ns / 8), 500.0, 1e-6);
-  EXPECT_NEAR(motion.speed_at(kSecond_ns / 2), 1000.0, 1e-6);
-  EXPECT_TRUE(motion.moving(kSecond_ns * 5 / 4 - 1000));
-  EXPECT_FALSE(motion.moving(kSecond_ns * 5 / 4 + 1000));
-  EXPECT_EQ(motion.position_at(2 * kSecond_ns), 1000.0);
-  EXPECT_EQ(motion.speed_at(2 * kSecond_ns), 0.0);
+  EXPECT_NEAR(motion.position_at(kSecondNs / 4), 125.0, 1e-6);
+  EXPECT_NEAR(motion.speed_at(kSecondNs / 8), 500.0, 1e-6);
+  EXPECT_NEAR(motion.speed_at(kSecondNs / 2), 1000.0, 1e-6);
+  EXPECT_TRUE(motion.moving(kSecondNs * 5 / 4 - 1000));
+  EXPECT_FALSE(motion.moving(kSecondNs * 5 / 4 + 1000));
+  EXPECT_EQ(motion.position_at(2 * kSecondNs), 1000.0);
+  EXPECT_EQ(motion.speed_at(2 * kSecondNs), 0.0);
 }
 
 TEST(Motion, AShortMoveIsATriangle) {
@@ -35,7 +35,7 @@ TEST(Motion, AShortMoveIsATriangle) {
   const auto half_ns = std::llround(half_s * 1e9);
   EXPECT_NEAR(motion.position_at(half_ns), -50.0, 1e-4);
   EXPECT_NEAR(motion.speed_at(half_ns), -1000 * half_s, 1e-3);
-  EXPECT_EQ(motion.position_at(kSecond_ns), -100.0);
+  EXPECT_EQ(motion.position_at(kSecondNs), -100.0);
 }
 
 TEST(Motion, NeverJumpsNorTurnsBack) {
@@ -46,7 +46,7 @@ TEST(Motion, NeverJumpsNorTurnsBack) {
   double before = 0.0;
   double highest = 0.0;
   double speed_before = 0.0;
-  for (std::int64_t t = 0; t < 4 * kSecond_ns; t += 100'000) {
+  for (std::int64_t t = 0; t < 4 * kSecondNs; t += 100'000) {
     const double position = motion.position_at(t);
     const double speed = motion.speed_at(t);
     ASSERT_LE(std::abs(position - before), 1000 * 1e-4 + 1e-6) << t;
@@ -70,12 +70,12 @@ TEST(Motion, MovesInOneDirectionDoNotStopBetween) {
 TEST(Motion, BrakesAndGoesOn) {
   Motion motion(0);
   motion.add(move(1000, 1000), 4000, 0, 0);
-  motion.brake(kSecond_ns / 2);  // at 375 steps; 125 more to stand still
-  EXPECT_NEAR(motion.position_at(kSecond_ns), 500.0, 1e-6);
-  EXPECT_FALSE(motion.moving(kSecond_ns));
-  motion.resume(kSecond_ns);
-  EXPECT_TRUE(motion.moving(kSecond_ns + 1));
-  EXPECT_EQ(motion.position_at(3 * kSecond_ns), 1000.0);
+  motion.brake(kSecondNs / 2);  // at 375 steps; 125 more to stand still
+  EXPECT_NEAR(motion.position_at(kSecondNs), 500.0, 1e-6);
+  EXPECT_FALSE(motion.moving(kSecondNs));
+  motion.resume(kSecondNs);
+  EXPECT_TRUE(motion.moving(kSecondNs + 1));
+  EXPECT_EQ(motion.position_at(3 * kSecondNs), 1000.0);
 }
 
 // A hold may stop beyond the end of a move that was to run on into the next.
@@ -83,32 +83,32 @@ TEST(Motion, BrakesAcrossAMoveAndDoesNotGoBackForIt) {
   Motion motion(0);
   motion.add(move(400, 1000), 4000, 0, 0);
   motion.add(move(1000, 1000), 4000, 0, 0);
-  motion.brake(kSecond_ns / 2);
-  EXPECT_NEAR(motion.position_at(kSecond_ns), 500.0, 1e-6);
-  motion.resume(kSecond_ns);
+  motion.brake(kSecondNs / 2);
+  EXPECT_NEAR(motion.position_at(kSecondNs), 500.0, 1e-6);
+  motion.resume(kSecondNs);
   EXPECT_EQ(motion.moves().size(), 1U);
-  EXPECT_GE(motion.speed_at(kSecond_ns + 1000), 0.0);
-  EXPECT_EQ(motion.position_at(3 * kSecond_ns), 1000.0);
+  EXPECT_GE(motion.speed_at(kSecondNs + 1000), 0.0);
+  EXPECT_EQ(motion.position_at(3 * kSecondNs), 1000.0);
 }
 
 TEST(Motion, WhatWasStaysWhenTheFutureChanges) {
   Motion motion(0);
   motion.add(move(1000, 1000), 4000, 0, 0);
-  const double then = motion.position_at(kSecond_ns / 3);
-  motion.halt(kSecond_ns / 2);
-  EXPECT_EQ(motion.position_at(kSecond_ns / 3), then);
-  EXPECT_EQ(motion.position_at(kSecond_ns), 375.0);
+  const double then = motion.position_at(kSecondNs / 3);
+  motion.halt(kSecondNs / 2);
+  EXPECT_EQ(motion.position_at(kSecondNs / 3), then);
+  EXPECT_EQ(motion.position_at(kSecondNs), 375.0);
 }
 
 TEST(Motion, LosesEachNthStepBothWays) {
   Motion motion(0, {50, 0});
   motion.add(move(16000, 4000), 40000, 0, 0);
-  EXPECT_EQ(motion.motor_steps_at(10 * kSecond_ns), 15680.0);
-  motion.add(move(0, 4000), 40000, 10 * kSecond_ns, 0);
-  EXPECT_EQ(motion.motor_steps_at(20 * kSecond_ns), 0.0);
-  Motion later(0, {50, 5 * kSecond_ns});
+  EXPECT_EQ(motion.motor_steps_at(10 * kSecondNs), 15680.0);
+  motion.add(move(0, 4000), 40000, 10 * kSecondNs, 0);
+  EXPECT_EQ(motion.motor_steps_at(20 * kSecondNs), 0.0);
+  Motion later(0, {50, 5 * kSecondNs});
   later.add(move(16000, 4000), 40000, 0, 0);
-  EXPECT_EQ(later.motor_steps_at(4 * kSecond_ns), std::round(later.position_at(4 * kSecond_ns)));
+  EXPECT_EQ(later.motor_steps_at(4 * kSecondNs), std::round(later.position_at(4 * kSecondNs)));
 }
 
 struct Axis {
@@ -120,7 +120,7 @@ struct Axis {
   std::int64_t next_step(std::int64_t from_ns) const {
     const double angle = axis.shaft_angle_deg(from_ns);
     std::int64_t low = from_ns;
-    std::int64_t high = from_ns + kSecond_ns / 100;
+    std::int64_t high = from_ns + kSecondNs / 100;
     while (high - low > 1) {
       const std::int64_t middle = (low + high) / 2;
       (axis.shaft_angle_deg(middle) == angle ? low : high) = middle;
@@ -130,8 +130,8 @@ struct Axis {
 };
 
 double measured_speed(const Axis& turning) {
-  const std::int64_t first = turning.next_step(2 * kSecond_ns);
-  const std::int64_t last = turning.next_step(7 * kSecond_ns);
+  const std::int64_t first = turning.next_step(2 * kSecondNs);
+  const std::int64_t last = turning.next_step(7 * kSecondNs);
   const double way = turning.axis.shaft_angle_deg(last) - turning.axis.shaft_angle_deg(first);
   return way / (static_cast<double>(last - first) * 1e-9);
 }
@@ -142,7 +142,7 @@ TEST(MotorAxis, TurnsAtTheSpeedAskedFor) {
   turning.settings.set(100, 32000.0 / 360.0);
   turning.axis.move_to(180.0, 22.5, turning.settings, 0);
   EXPECT_NEAR(measured_speed(turning) / 22.5, 1.0, 1e-6);
-  EXPECT_NEAR(turning.axis.shaft_angle_deg(20 * kSecond_ns), -60.0 + 180.0, 1e-9);
+  EXPECT_NEAR(turning.axis.shaft_angle_deg(20 * kSecondNs), -60.0 + 180.0, 1e-9);
 }
 
 TEST(MotorAxis, CrystalGainChangesTheSpeedButNotTheWay) {
@@ -151,8 +151,8 @@ TEST(MotorAxis, CrystalGainChangesTheSpeedButNotTheWay) {
   Axis turning{options};
   turning.axis.move_to(180.0, 22.5, turning.settings, 0);
   EXPECT_NEAR(measured_speed(turning) / 22.5, 1.002, 2e-6);
-  EXPECT_NEAR(turning.axis.shaft_angle_deg(20 * kSecond_ns), 120.0, 1e-9);
-  EXPECT_NEAR(turning.axis.believed_speed_deg_s(turning.settings, 4 * kSecond_ns), 22.5, 1e-6);
+  EXPECT_NEAR(turning.axis.shaft_angle_deg(20 * kSecondNs), 120.0, 1e-9);
+  EXPECT_NEAR(turning.axis.believed_speed_deg_s(turning.settings, 4 * kSecondNs), 22.5, 1e-6);
 }
 
 TEST(MotorAxis, StartsLateByARandomTimeWithinBounds) {
@@ -170,7 +170,7 @@ TEST(MotorAxis, IsFasterThanItSaysBelowTheFirmwaresFloor) {
   turning.settings.set(100, 8.9);  // 30 steps/s are 3.37 deg/s, of a shaft of 88.9 steps/deg
   turning.axis.move_to(100.0, 1.0, turning.settings, 0);
   EXPECT_NEAR(measured_speed(turning), 30.0 * 360.0 / 32000.0, 1e-3);
-  EXPECT_NEAR(turning.axis.believed_speed_deg_s(turning.settings, 5 * kSecond_ns), 1.0, 1e-9);
+  EXPECT_NEAR(turning.axis.believed_speed_deg_s(turning.settings, 5 * kSecondNs), 1.0, 1e-9);
 }
 
 TEST(MotorAxis, HomesOnTheSwitchWithItsErrorThoughStepsWereLost) {
@@ -183,13 +183,13 @@ TEST(MotorAxis, HomesOnTheSwitchWithItsErrorThoughStepsWereLost) {
   std::int64_t now_ns = 0;
   for (int i = 0; i < kHomings; ++i) {
     homing.axis.begin_homing(homing.settings, now_ns);
-    now_ns += 4 * kSecond_ns;
+    now_ns += 4 * kSecondNs;
     homing.axis.finish_homing(homing.settings, now_ns);
     const double error = homing.axis.shaft_angle_deg(now_ns) + 75.0;
     sum += error;
     squares += error * error;
     homing.axis.move_to(-200.0, 180.0, homing.settings, now_ns);
-    now_ns += 2 * kSecond_ns;
+    now_ns += 2 * kSecondNs;
   }
   EXPECT_NEAR(sum / kHomings, 0.0, 0.1);
   EXPECT_NEAR(std::sqrt(squares / kHomings), 0.35, 0.06);
