@@ -73,7 +73,6 @@ int calibrate(const CommonOptions& options, const std::string& calibration_path,
               progress.write(msg::CalibrationProgress(step));
             },
             [&](const msg::Calibration& calibration) { store.publish(calibration); }});
-  store.publish_saved(rig.rig);
 
   participant.subscribe<msg::Health>(kHealthTopic, [&](const auto& news) {
     if (news.participant().to_string() == "hokuyo_reader") calibrator.name_lidar(lidar_name(news));
@@ -89,6 +88,7 @@ int calibrate(const CommonOptions& options, const std::string& calibration_path,
                      calibrator.running() ? "calibrating" : "waiting for a request");
   });
   participant.start();
+  store.publish_saved(rig.rig);
   while (!stop.wait_for(std::chrono::hours(1))) {
   }
   participant.stop();

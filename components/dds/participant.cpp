@@ -122,6 +122,12 @@ void warn_of_small_udp_buffers() {
 Participant::Participant(const ParticipantOptions& options)
     : options_(options), peers_(std::make_unique<PeerListener>(woken_)) {
   auto* const factory = fast::DomainParticipantFactory::get_instance();
+  // Fast DDS 2.9's table of types knows no lock: a peer discovered while our own types are being
+  // entered crashes the process. So the participant comes to life in start(), with all it has.
+  fast::DomainParticipantFactoryQos factory_qos;
+  factory->get_qos(factory_qos);
+  factory_qos.entity_factory().autoenable_created_entities = false;
+  factory->set_qos(factory_qos);
   const fast::DomainParticipantQos qos = participant_qos(options_);
   participant_ = factory->create_participant(static_cast<fast::DomainId_t>(options_.domain), qos,
                                              peers_.get(), fast::StatusMask::none());
@@ -204,6 +210,9 @@ void Participant::on_problem(std::function<void(const std::string&)> callback) {
 }
 
 void Participant::start() {
+  if (participant_->enable() != ReturnCode_t::RETCODE_OK) {
+    throw DdsError("the DDS participant could not be enabled; is /dev/shm full?");
+  }
   thread_ = std::thread([this] { run(); });
 }
 

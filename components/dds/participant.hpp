@@ -56,13 +56,16 @@ class Participant {
   Participant& operator=(const Participant&) = delete;
   ~Participant();
 
-  // Before start() only.
+  // Writers and subscriptions are made before start(), which makes the participant known to
+  // others. Throws DdsError.
   template <class Message>
   void subscribe(const Topic<Message>& topic, std::function<void(const Message&)> callback);
   void on_tick(std::chrono::milliseconds period, std::function<void()> callback);
   // Told, in words, of unmatched QoS, lost samples and vanished peers. They are logged anyhow.
   void on_problem(std::function<void(const std::string&)> callback);
 
+  // Makes the participant known to others; its writers and subscriptions are made before. Throws
+  // DdsError.
   void start();
   void stop();  // no callback runs after it returns; not from a callback
 
