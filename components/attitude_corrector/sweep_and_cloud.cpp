@@ -29,7 +29,7 @@ bool SweepAndCloud::add(const msg::Sweep& assembled) {
 std::string SweepAndCloud::add(const PointCloud2Message& message) {
   if (cloud_stamp_ns_ && !sweep_) ++clouds_refused_;  // the one before never got its sweep
   cloud_stamp_ns_.reset();
-  const std::string wrong = from_message(message, cloud_);
+  std::string wrong = from_message(message, cloud_);
   if (!wrong.empty()) {
     ++clouds_refused_;
     return wrong;

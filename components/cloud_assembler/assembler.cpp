@@ -12,9 +12,9 @@ using std::chrono::steady_clock;
 constexpr std::size_t kMostWaitingLines = 400;
 constexpr std::uint32_t kMostLines = 20000;
 constexpr std::size_t kMostBeams = 10000;
-constexpr double kShortestScan_ns = 1e5;
-constexpr std::int64_t kLatest_ns = 2'147'483'647'000'000'000;  // what a cloud's stamp can hold
-constexpr std::int64_t kAxisMemory_ns = 60'000'000'000;
+constexpr double kShortestScanNs = 1e5;
+constexpr std::int64_t kLatestNs = 2'147'483'647'000'000'000;  // what a cloud's stamp can hold
+constexpr std::int64_t kAxisMemoryNs = 60'000'000'000;
 
 // A line on its way may be this late against the sequencer's word that the sweep is over.
 constexpr auto kGraceAfterSweep = std::chrono::seconds(1);
@@ -26,9 +26,9 @@ bool well_formed(const msg::ScanLine& line) {
   return beams > 0 && beams <= kMostBeams && intensities_fit &&
          std::isfinite(line.first_beam_angle_deg()) && std::isfinite(line.beam_step_deg()) &&
          line.beam_period_ns() > 0.0 && line.scan_period_ns() < 1e10 &&
-         line.scan_period_ns() > kShortestScan_ns &&
+         line.scan_period_ns() > kShortestScanNs &&
          line.beam_period_ns() * static_cast<double>(beams - 1) < line.scan_period_ns() &&
-         line.beam0_time_ns() > 0 && line.beam0_time_ns() < kLatest_ns;
+         line.beam0_time_ns() > 0 && line.beam0_time_ns() < kLatestNs;
 }
 
 bool well_formed_window(const msg::Sweep& sweep) {
@@ -86,7 +86,7 @@ void Assembler::add(const msg::Axis& axis) {
   if (goes_back || lost) axis_ = AxisTrack();
   last_axis_number_ = axis.sequence_number();
   for (const msg::AxisSample& sample : axis.samples()) add(sample);
-  if (last_axis_ns_ > kAxisMemory_ns) axis_.forget_before(last_axis_ns_ - kAxisMemory_ns);
+  if (last_axis_ns_ > kAxisMemoryNs) axis_.forget_before(last_axis_ns_ - kAxisMemoryNs);
   place_lines();
 }
 

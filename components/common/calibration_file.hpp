@@ -2,6 +2,7 @@
 // from.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "swivel/idl/swivel.h"
@@ -10,7 +11,7 @@ namespace swivel {
 
 // Row and column of each quantity in Calibration::covariance.
 enum CalibrationIndex { kAlpha, kBias, kMountingX, kMountingY, kMountingZ, kRoll, kPitch, kYaw };
-inline constexpr int kCalibrationSize = 8;
+inline constexpr std::size_t kCalibrationSize = 8;
 
 double alpha_sigma_deg(const msg::Calibration& calibration);
 

@@ -6,7 +6,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
 constexpr std::array<const char*, 4> kFieldNames{"x", "y", "z", "intensity"};
 constexpr std::uint32_t kMostLines = 20000;
@@ -47,8 +47,8 @@ std::string base_frame(const std::string& rig) {
 
 void to_message(const OrganisedCloud& cloud, std::int64_t first_beam_time_ns,
                 const std::string& frame_id, PointCloud2Message& message) {
-  const std::int64_t part_ns = (first_beam_time_ns % kSecond_ns + kSecond_ns) % kSecond_ns;
-  const std::int64_t whole_s = (first_beam_time_ns - part_ns) / kSecond_ns;
+  const std::int64_t part_ns = (first_beam_time_ns % kSecondNs + kSecondNs) % kSecondNs;
+  const std::int64_t whole_s = (first_beam_time_ns - part_ns) / kSecondNs;
   message.header().stamp().sec(static_cast<std::int32_t>(whole_s));
   message.header().stamp().nanosec(static_cast<std::uint32_t>(part_ns));
   message.header().frame_id(frame_id);
@@ -88,7 +88,7 @@ std::string from_message(const PointCloud2Message& message, OrganisedCloud& clou
 }
 
 std::int64_t stamp_ns(const PointCloud2Message& message) {
-  return message.header().stamp().sec() * kSecond_ns + message.header().stamp().nanosec();
+  return message.header().stamp().sec() * kSecondNs + message.header().stamp().nanosec();
 }
 
 }  // namespace swivel

@@ -11,7 +11,7 @@ constexpr Range kAngle{-360.0, 360.0};
 constexpr Range kLength{-100000.0, 100000.0};
 
 std::string read_rig_name(YamlSection& file) {
-  const std::string name = file.text("rig");
+  std::string name = file.text("rig");
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   });

@@ -174,7 +174,7 @@ std::string YamlSection::text(const std::string& key, const std::string& when_ab
 }
 
 std::string YamlSection::one_of(const std::string& key, const std::vector<std::string>& words) {
-  const std::string word = text(key);
+  std::string word = text(key);
   if (std::find(words.begin(), words.end(), word) == words.end()) {
     refuse(key, "is '" + word + "', must be one of: " + joined(words));
   }

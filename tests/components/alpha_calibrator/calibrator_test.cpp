@@ -17,8 +17,8 @@ namespace {
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-constexpr double kAlpha_deg = 29.36;
-constexpr std::int64_t kStamp_ns = 1'700'000'000'000'000'000;
+constexpr double kAlphaDeg = 29.36;
+constexpr std::int64_t kStampNs = 1'700'000'000'000'000'000;
 
 // How far along a direction a room of four walls, floor and roof ends.
 double reach_m(const Eigen::Vector3d& ray) {
@@ -81,18 +81,18 @@ class CalibratorRun : public testing::Test {
   msg::Attitude attitude(std::uint64_t id, double phi_offset_deg) {
     msg::Attitude attitude;
     attitude.sweep_id(id);
-    attitude.first_beam_time_ns(kStamp_ns + static_cast<std::int64_t>(id));
+    attitude.first_beam_time_ns(kStampNs + static_cast<std::int64_t>(id));
     attitude.mode(7);
     attitude.verdict(msg::VERDICT_GOOD);
     attitude.estimator("ring_mean");
-    attitude.beta_deg(kAlpha_deg - phi_offset_deg);
+    attitude.beta_deg(kAlphaDeg - phi_offset_deg);
     attitude.beta_sigma_deg(0.1);
     return attitude;
   }
 
   PointCloud2Message raw(std::uint64_t id, const OrganisedCloud& cloud) {
     PointCloud2Message message;
-    to_message(cloud, kStamp_ns + static_cast<std::int64_t>(id), "swivel/start", message);
+    to_message(cloud, kStampNs + static_cast<std::int64_t>(id), "swivel/start", message);
     return message;
   }
 
@@ -137,8 +137,8 @@ TEST_F(CalibratorRun, FindsAlphaInARoom) {
   sweep_the_room(104, 0.3);
   ASSERT_EQ(published_.size(), 1U) << told_.back().words();
   const msg::Calibration& calibration = published_[0];
-  EXPECT_NEAR(calibration.alpha_deg(), kAlpha_deg, 0.1);
-  EXPECT_LT(std::abs(calibration.alpha_deg() - kAlpha_deg), 4.0 * alpha_sigma_deg(calibration));
+  EXPECT_NEAR(calibration.alpha_deg(), kAlphaDeg, 0.1);
+  EXPECT_LT(std::abs(calibration.alpha_deg() - kAlphaDeg), 4.0 * alpha_sigma_deg(calibration));
   EXPECT_EQ(calibration.rig().to_string(), "swivel");
   EXPECT_EQ(calibration.sweeps_used(), 4U);
   EXPECT_EQ(calibration.serial_number(), "H123");

@@ -7,13 +7,13 @@
 namespace swivel {
 namespace {
 
-constexpr std::int64_t kStamp_ns = 1'700'000'000'000'000'001;
+constexpr std::int64_t kStampNs = 1'700'000'000'000'000'001;
 
 msg::Sweep sweep(std::int64_t number) {
   msg::Sweep sweep;
   sweep.sweep_id(static_cast<std::uint64_t>(number));
   sweep.phase(msg::PHASE_ASSEMBLED);
-  sweep.first_beam_time_ns(kStamp_ns + number);
+  sweep.first_beam_time_ns(kStampNs + number);
   sweep.lines_used(2);
   sweep.lines_expected(2);
   sweep.complete(true);
@@ -24,7 +24,7 @@ PointCloud2Message cloud(std::int64_t number) {
   OrganisedCloud points(2, 3);
   points.points[0].x_m = static_cast<float>(number);
   PointCloud2Message message;
-  to_message(points, kStamp_ns + number, "swivel/start", message);
+  to_message(points, kStampNs + number, "swivel/start", message);
   return message;
 }
 

@@ -167,7 +167,7 @@ TEST(Assembler, AGeometrySetAnewIsThatOfTheNextSweep) {
   const Story first;
   Story second;
   second.sweep_id = 8;
-  second.first_beam_ns += 5'000 * kMillisecond_ns;
+  second.first_beam_ns += 5'000 * kMillisecondNs;
   AssemblyOptions other = story_options();
   other.geometry = RigGeometry();
   Stage stage(other);

@@ -148,7 +148,7 @@ TEST_F(EarlyEnd, AFaultySweepToldTwiceStaysFaulty) {
 TEST_F(EarlyEnd, TheSameIdAtAnotherTimeIsAnotherSweep) {
   stage_.add_lines(story_, 0, 5);
   Story again;
-  again.first_beam_ns += 9'000 * kMillisecond_ns;
+  again.first_beam_ns += 9'000 * kMillisecondNs;
   stage_.add(again.axis());
   stage_.add(again.cruising());
   stage_.add_lines(again, 0, 12);

@@ -248,7 +248,7 @@ TEST(Assembler, ARandomStreamKeepsTheBooks) {
     switch (pick(14)) {
       case 0:
         story.sweep_id += static_cast<std::uint64_t>(pick(2));
-        story.first_beam_ns += pick(400) * kMillisecond_ns;
+        story.first_beam_ns += pick(400) * kMillisecondNs;
         break;
       case 1:
         stage.add(story.axis());

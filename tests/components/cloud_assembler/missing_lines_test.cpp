@@ -179,8 +179,8 @@ TEST(MissingAngles, AnAxisOfTheOtherKindIsNotTaken) {
 TEST(MissingAngles, TheTrackDoesNotRunStraightOverALostMessage) {
   const Story lost;
   Story before = lost, after = lost;
-  before.first_beam_ns -= 3'000 * kMillisecond_ns;
-  after.first_beam_ns += 3'000 * kMillisecond_ns;
+  before.first_beam_ns -= 3'000 * kMillisecondNs;
+  after.first_beam_ns += 3'000 * kMillisecondNs;
   msg::Axis axis_before = before.axis(), axis_after = after.axis();
   axis_before.sequence_number(4);
   axis_after.sequence_number(6);
@@ -197,13 +197,13 @@ TEST(MissingAngles, TheTrackDoesNotRunStraightOverALostMessage) {
 // Each line at its own standing position, one of them missed.
 TEST(StopAndGo, AMissedWindowIsAMissingRow) {
   Story story;
-  story.true_period_ns = 400 * kMillisecond_ns;  // from one standing position to the next
+  story.true_period_ns = 400 * kMillisecondNs;  // from one standing position to the next
   Stage stage;
   stage.add(story.axis());
   for (int index = 0; index < 12; ++index) {
     msg::Sweep window = story.cruising();
-    window.window_start_ns(story.line_time_ns(index) - 10 * kMillisecond_ns);
-    window.window_end_ns(story.line_time_ns(index) + 30 * kMillisecond_ns);
+    window.window_start_ns(story.line_time_ns(index) - 10 * kMillisecondNs);
+    window.window_end_ns(story.line_time_ns(index) + 30 * kMillisecondNs);
     window.window_first_line(static_cast<std::uint32_t>(index));
     window.window_lines(1);
     stage.add(window);
@@ -216,7 +216,7 @@ TEST(StopAndGo, AMissedWindowIsAMissingRow) {
 TEST_F(MissingLines, TheNextSweepClosesTheOneBefore) {
   Story next;
   next.sweep_id = 8;
-  next.first_beam_ns += 4'000 * kMillisecond_ns;
+  next.first_beam_ns += 4'000 * kMillisecondNs;
   stage_.add_lines(story_, 0, 6);
   stage_.add(next.axis());
   stage_.add(next.cruising());

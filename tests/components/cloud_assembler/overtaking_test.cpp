@@ -69,8 +69,8 @@ Topic windows_of(const Story& story) {
   Topic topic;
   for (std::uint32_t index = 0; index < story.lines; ++index) {
     msg::Sweep window = story.cruising();
-    window.window_start_ns(story.line_time_ns(static_cast<int>(index)) - 10 * kMillisecond_ns);
-    window.window_end_ns(story.line_time_ns(static_cast<int>(index)) + 40 * kMillisecond_ns);
+    window.window_start_ns(story.line_time_ns(static_cast<int>(index)) - 10 * kMillisecondNs);
+    window.window_end_ns(story.line_time_ns(static_cast<int>(index)) + 40 * kMillisecondNs);
     window.window_first_line(index);
     window.window_lines(1);
     topic.emplace_back(window);
@@ -81,7 +81,7 @@ Topic windows_of(const Story& story) {
 
 TEST(Overtaking, StopAndGoGivesTheSameCloudToo) {
   Story story;
-  story.true_period_ns = 300 * kMillisecond_ns;
+  story.true_period_ns = 300 * kMillisecondNs;
   std::mt19937 random(11);
   for (int round = 0; round < 150; ++round) {
     const int lost = 1 + round % 10;

@@ -10,8 +10,8 @@
 namespace swivel {
 namespace {
 
-constexpr double kFirstBeam_deg = -135.0;
-constexpr double kBeamStep_deg = 14.9;
+constexpr double kFirstBeamDeg = -135.0;
+constexpr double kBeamStepDeg = 14.9;
 
 // Unlike for every beam of every line.
 std::uint16_t range_mm(int line, std::size_t beam) {
@@ -40,8 +40,8 @@ msg::ScanLine Story::line(int index) const {
   msg::ScanLine line;
   line.beam0_time_ns(line_time_ns(index));
   line.device_stamp_ms(static_cast<std::uint32_t>(5000 + 25 * index));
-  line.first_beam_angle_deg(kFirstBeam_deg);
-  line.beam_step_deg(kBeamStep_deg);
+  line.first_beam_angle_deg(kFirstBeamDeg);
+  line.beam_step_deg(kBeamStepDeg);
   line.beam_period_ns(beam_period_ns(*this));
   line.scan_period_ns(static_cast<double>(scan_period_ns));
   line.range_min_mm(60);
@@ -113,8 +113,8 @@ void Stage::expect_counters_add_up() const {
 }
 
 OrganisedCloud expected_cloud(const Story& story, const std::vector<int>& lost) {
-  const ForwardModel model(story_geometry(), rad_from_deg(kFirstBeam_deg),
-                           rad_from_deg(kBeamStep_deg), story.beams);
+  const ForwardModel model(story_geometry(), rad_from_deg(kFirstBeamDeg),
+                           rad_from_deg(kBeamStepDeg), story.beams);
   OrganisedCloud cloud(story.lines, story.beams);
   const double zero_rad = story.axis_angle_rad(story.line_time_ns(0));
   for (int row = 0; row < static_cast<int>(story.lines); ++row) {

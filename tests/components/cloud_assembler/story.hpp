@@ -10,7 +10,7 @@
 
 namespace swivel {
 
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000;
 
 struct Story {
   std::uint64_t sweep_id = 7;
@@ -23,7 +23,7 @@ struct Story {
   double speed_deg_s = 45.0;
 
   std::int64_t line_time_ns(int index) const { return first_beam_ns + index * true_period_ns; }
-  std::int64_t window_start_ns() const { return first_beam_ns - 2 * kMillisecond_ns; }
+  std::int64_t window_start_ns() const { return first_beam_ns - 2 * kMillisecondNs; }
   std::int64_t window_end_ns() const { return line_time_ns(static_cast<int>(lines)); }
   double axis_angle_rad(std::int64_t time_ns) const;
 

@@ -10,7 +10,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::int64_t kStamp_ns = 1'700'000'000'123'456'789;
+constexpr std::int64_t kStampNs = 1'700'000'000'123'456'789;
 
 // Any bits at all, NaN with any payload among them.
 OrganisedCloud random_cloud(std::size_t lines, std::size_t beams) {
@@ -26,7 +26,7 @@ OrganisedCloud random_cloud(std::size_t lines, std::size_t beams) {
   return cloud;
 }
 
-PointCloud2Message message_of(const OrganisedCloud& cloud, std::int64_t stamp = kStamp_ns) {
+PointCloud2Message message_of(const OrganisedCloud& cloud, std::int64_t stamp = kStampNs) {
   PointCloud2Message message;
   to_message(cloud, stamp, start_frame("swivel"), message);
   return message;
@@ -60,7 +60,7 @@ TEST(CloudMessage, IsAPointCloud2AsRos2KnowsIt) {
 
 TEST(CloudMessage, TheStampIsExactToTheNanosecond) {
   for (const std::int64_t stamp :
-       {kStamp_ns, std::int64_t{0}, std::int64_t{999'999'999}, std::int64_t{1'000'000'000},
+       {kStampNs, std::int64_t{0}, std::int64_t{999'999'999}, std::int64_t{1'000'000'000},
         std::int64_t{2'147'483'647'999'999'999}, std::int64_t{-1}, std::int64_t{-1'000'000'000},
         std::int64_t{-1'500'000'001}}) {
     const PointCloud2Message message = message_of(OrganisedCloud(1, 1), stamp);

@@ -7,7 +7,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -94,11 +93,16 @@ TEST(RigFiles, EveryKeyMeansWhatItSays) {
   EXPECT_NEAR(rig.plate->ring_thickness_m, 0.021, 1e-12);
 }
 
+bool names_file_and_line(const std::string& said, const std::string& path) {
+  if (said.find(path + ":") != 0) return false;
+  const std::size_t after_line = said.find_first_not_of("0123456789", path.size() + 1);
+  return after_line > path.size() + 1 && said.compare(after_line, 2, ": ") == 0;
+}
+
 // The first line of each says what its refusal must hold: "# expect: words".
 TEST(RigFiles, EveryBadOneIsRefusedByFileAndLine) {
   const auto files = files_in(std::string(SWIVEL_TEST_DATA) + "/config/invalid");
   EXPECT_GE(files.size(), 15U);
-  const std::regex file_and_line("[^:]+\\.yaml:[0-9]+: .*");
   for (const std::string& path : files) {
     std::ifstream file(path, std::ios::binary);
     std::string first;
@@ -106,8 +110,7 @@ TEST(RigFiles, EveryBadOneIsRefusedByFileAndLine) {
     ASSERT_EQ(first.substr(0, 10), "# expect: ") << path;
     const std::string said = refusal(path);
     EXPECT_NE(said.find(first.substr(10)), std::string::npos) << path << "\n  said: " << said;
-    EXPECT_TRUE(std::regex_match(said, file_and_line)) << said;
-    EXPECT_EQ(said.substr(0, path.size()), path);
+    EXPECT_TRUE(names_file_and_line(said, path)) << said;
   }
 }
 
