@@ -21,7 +21,8 @@ class CorrectionStage {
         rig_name_(participant.rig()) {}
 
   void set_calibration(const msg::Calibration& calibration) {
-    corrector_.set_calibration(calibration);
+    const std::string wrong = corrector_.set_calibration(calibration);
+    if (!wrong.empty()) return health_.error("a calibration was refused: " + wrong);
     spdlog::info("calibration: alpha {:.4f} deg, from {}", calibration.alpha_deg(),
                  calibration.provenance());
   }
@@ -41,9 +42,8 @@ class CorrectionStage {
     health_.set_counter("clouds_uncorrected", uncorrected_);
     health_.set_counter("clouds_refused", pair_.clouds_refused());
     health_.set_counter("sweeps_without_cloud", pair_.sweeps_without_cloud());
-    const bool idle = good_ + uncorrected_ == 0;
-    health_.set_state(idle ? msg::HEALTH_WAITING : msg::HEALTH_OK,
-                      idle ? "waiting for a raw cloud" : "correcting");
+    health_.set_state(msg::HEALTH_OK,
+                      good_ + uncorrected_ == 0 ? "waiting for a raw cloud" : "correcting");
   }
 
  private:

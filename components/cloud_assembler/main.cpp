@@ -54,6 +54,8 @@ void report(const Assembler& assembler, const SweepPublisher& publisher, HealthR
   health.set_counter("lines_rejected", counters.lines_rejected);
   health.set_counter("lines_late", counters.lines_late);
   health.set_counter("lines_missing", counters.lines_missing);
+  health.set_counter("lines_waiting", assembler.lines_waiting());
+  health.set_counter("windows_rejected", counters.windows_rejected);
   health.set_counter("axis_samples_rejected", counters.axis_samples_rejected);
   health.set_counter("sweeps_complete", counters.sweeps_complete);
   health.set_counter("sweeps_incomplete", counters.sweeps_incomplete);

@@ -122,8 +122,7 @@ void warn_of_small_udp_buffers() {
 Participant::Participant(const ParticipantOptions& options)
     : options_(options), peers_(std::make_unique<PeerListener>(woken_)) {
   auto* const factory = fast::DomainParticipantFactory::get_instance();
-  // Fast DDS 2.9's table of types knows no lock: a peer discovered while our own types are being
-  // entered crashes the process. So the participant comes to life in start(), with all it has.
+  // The participant comes to life in start(), with all it has: no peer is met half-made.
   fast::DomainParticipantFactoryQos factory_qos;
   factory->get_qos(factory_qos);
   factory_qos.entity_factory().autoenable_created_entities = false;

@@ -117,6 +117,17 @@ class Participant {
   std::thread thread_;
 };
 
+// The type without its description. Fast DDS 2.9 rebuilds a type that it hears described, and
+// crashes where that is a sequence of structs it does not know: with it, a subscriber to one of
+// our topics would be killed by our other topics.
+template <class Message>
+eprosima::fastdds::dds::TypeSupport make_type() {
+  eprosima::fastdds::dds::TypeSupport type(new typename TypeSupportOf<Message>::Type());
+  type->auto_fill_type_object(false);
+  type->auto_fill_type_information(false);
+  return type;
+}
+
 // Writes from any thread. Must not outlive its participant.
 template <class Message>
 class Writer {
@@ -124,7 +135,7 @@ class Writer {
   Writer(Participant& participant, const swivel::Topic<Message>& topic)
       : rig_(participant.rig()),
         topic_(topic.full_name(rig_)),
-        writer_(participant.make_writer(topic_, topic.name, make_type())) {}
+        writer_(participant.make_writer(topic_, topic.name, make_type<Message>())) {}
 
   // Fills rig and sequence number. False if it could not be sent within the topic's
   // max_blocking_time, and counted as such.
@@ -159,10 +170,6 @@ class Writer {
   std::uint64_t failures() const { return failures_; }
 
  private:
-  static eprosima::fastdds::dds::TypeSupport make_type() {
-    return eprosima::fastdds::dds::TypeSupport(new typename TypeSupportOf<Message>::Type());
-  }
-
   std::string rig_;
   std::string topic_;
   eprosima::fastdds::dds::DataWriter* writer_;
@@ -176,8 +183,7 @@ void Participant::subscribe(const swivel::Topic<Message>& topic,
                             std::function<void(const Message&)> callback) {
   using eprosima::fastdds::dds::SampleInfo;
   const std::string name = topic.full_name(options_.rig);
-  const eprosima::fastdds::dds::TypeSupport type(new typename TypeSupportOf<Message>::Type());
-  auto* const reader = make_reader(name, topic.name, type);
+  auto* const reader = make_reader(name, topic.name, make_type<Message>());
   // The message is kept from sample to sample: a cloud's 11 MB are allocated once.
   auto message = std::make_shared<Message>();
   auto last_numbers =
