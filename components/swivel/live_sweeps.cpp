@@ -58,6 +58,11 @@ LiveSweeps::LiveSweeps(Participant& participant)
   });
 }
 
+bool LiveSweeps::await_idle(std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  return came_.wait_for(lock, timeout, [this] { return idle_; });
+}
+
 void LiveSweeps::request(int mode, int count, msg::SweepSequence action_sequence) {
   const std::lock_guard lock(mutex_);
   requester_.request(new_request_id(), mode, count, action_sequence);
@@ -70,6 +75,10 @@ void LiveSweeps::cancel() {
 
 void LiveSweeps::take(const msg::Sweep& sweep) {
   const std::lock_guard lock(mutex_);
+  if (sweep.phase() != msg::PHASE_REFUSED && sweep.phase() != msg::PHASE_ASSEMBLED) {
+    idle_ = sweep.phase() == msg::PHASE_IDLE;
+    came_.notify_all();
+  }
   if (!requester_.saw(sweep)) return;
   if (sweep.phase() == msg::PHASE_REFUSED) return tell({{}, {}, sweep.reason()});
   if (sweep.phase() == msg::PHASE_FAULT) return tell({{}, {}, "motor fault: " + sweep.reason()});

@@ -21,6 +21,9 @@ class LiveSweeps {
   // Subscribes: before participant.start().
   explicit LiveSweeps(Participant& participant);
 
+  // Until the sequencer has nothing to do; false when the time is over.
+  bool await_idle(std::chrono::milliseconds timeout);
+
   void request(int mode, int count, msg::SweepSequence action_sequence);
   void cancel();
 
@@ -53,6 +56,7 @@ class LiveSweeps {
   std::map<std::int64_t, Parts> parts_;  // by stamp
   std::deque<News> news_;
   std::size_t next_index_ = 0;
+  bool idle_ = false;
 };
 
 }  // namespace swivel

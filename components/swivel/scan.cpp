@@ -14,6 +14,9 @@ using std::chrono::steady_clock;
 // Of homing, or of one sweep of the slowest mode with its way there and back.
 constexpr auto kSilence = std::chrono::seconds(90);
 
+// Of another's sweep that is just returning.
+constexpr auto kBusy = std::chrono::seconds(20);
+
 // One line that is written over, on a terminal only.
 void show_progress(const std::string& words, int done, int count) {
   if (isatty(STDERR_FILENO) == 0) return;
@@ -47,6 +50,9 @@ const std::vector<std::string>& scanning_participants() {
 int scan(LiveSweeps& sweeps, const RigFile& rig, const ScanOptions& options, OutputFolder& output,
          StopSignal& stop, const Remark& remark) {
   check_mode(rig, options.mode);
+  if (!sweeps.await_idle(kBusy)) {
+    throw ExitError(kExitTryAgain, "the sequencer is busy with another request; try again later");
+  }
   sweeps.request(options.mode, options.count, options.action_sequence);
   int done = 0;
   int good = 0;
