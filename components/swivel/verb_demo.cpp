@@ -22,6 +22,9 @@ namespace {
 
 constexpr int kDemoDomain = 73;  // so that a demo does not meet a scanner at work
 
+// A worse home switch than the bench's own: the skew is to be seen with the naked eye.
+constexpr const char* kHomeSigma_deg = "4";
+
 struct DemoOptions {
   std::string folder = "demo";
   std::vector<int> modes{1, 4};

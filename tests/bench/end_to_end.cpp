@@ -77,7 +77,7 @@ class Sweeper {
     while (clouds_ == before && steady_clock::now() < deadline) usleep(200);
     if (clouds_ == before) throw ExitError(kExitUnavailable, "no cloud came back");
     usleep(300'000);  // the last samples are acknowledged
-    return std::chrono::duration<double, std::milli>(taken_ - published_).count();
+    return std::chrono::duration<double, std::milli>(taken_.load() - published_).count();
   }
 
  private:
