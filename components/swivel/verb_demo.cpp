@@ -28,9 +28,9 @@ constexpr const char* kHomeSigma_deg = "4";
 struct DemoOptions {
   std::string folder = "demo";
   std::vector<int> modes{1, 4};
-  int calibration_mode = 2;
+  int calibration_mode = 3;
   int calibration_sweeps = 3;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 3;
 };
 
 struct BenchAddresses {
