@@ -225,7 +225,7 @@ void Participant::run() {
   fast::ConditionSeq active;
   while (!stopping_) {
     const auto pause = run_ticks();
-    const eprosima::fastrtps::Duration_t timeout(static_cast<double>(pause.count()) * 1e-3);
+    const eprosima::fastrtps::Duration_t timeout(static_cast<long double>(pause.count()) * 1e-3L);
     wait_set_.wait(active, timeout);
     woken_.set_trigger_value(false);
     report_peers();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -36,7 +37,19 @@ double peak_memory_mb(pid_t process) {
   return 0.0;
 }
 
-msg::ScanLine line_at(std::int64_t time_ns) {
+// A round room, and where the plate is something that fills the ring: the estimator works in full.
+void set_ranges(double phi_deg, msg::ScanLine& line) {
+  constexpr double kPlateDepth_mm = 60.935;
+  constexpr std::size_t kPlateBeams = 66;
+  line.ranges_mm().assign(kBeams, 2500);
+  if (std::abs(phi_deg - 120.0) > 40.0) return;
+  for (std::size_t beam = 0; beam < kPlateBeams; ++beam) {
+    const double angle_rad = rad_from_deg(-135.0 + 0.25 * static_cast<double>(beam));
+    line.ranges_mm()[beam] = static_cast<std::uint16_t>(-kPlateDepth_mm / std::cos(angle_rad));
+  }
+}
+
+msg::ScanLine line_at(std::int64_t time_ns, double phi_deg) {
   msg::ScanLine line;
   line.beam0_time_ns(time_ns);
   line.first_beam_angle_deg(-135);
@@ -45,7 +58,7 @@ msg::ScanLine line_at(std::int64_t time_ns) {
   line.beam_period_ns(kPeriod_ns / 1440);
   line.range_min_mm(20);
   line.range_max_mm(30000);
-  line.ranges_mm().assign(kBeams, 2500);
+  set_ranges(phi_deg, line);
   line.intensities().assign(kBeams, 1000);
   return line;
 }
@@ -70,7 +83,8 @@ class Sweeper {
       if (line % 50 == 0) lines_.wait_until_acknowledged(std::chrono::seconds(5));
       if (line + 1 == kLines) usleep(200'000);  // as live: the lines before are long assembled
       published_ = steady_clock::now();
-      lines_.write(line_at(start_ns + std::llround(line * kPeriod_ns)));
+      lines_.write(line_at(start_ns + std::llround(line * kPeriod_ns),
+                           line * kPeriod_ns * 1e-9 * kSpeed_deg_s));
     }
     const int before = static_cast<int>(id) - 1;
     const auto deadline = steady_clock::now() + std::chrono::seconds(20);
