@@ -192,6 +192,7 @@ TEST(Participant, SaysThatQosDoesNotMatch) {
   ASSERT_TRUE(wait_until([&] { return !problems.values().empty(); }));
   EXPECT_THAT(problems.values().front(),
               AllOf(HasSubstr("rt/test_rig/raw_cloud"), HasSubstr("reliability")));
+  sender.kill_at_once();  // it would wait for a reader
 }
 
 TEST(Participant, RunsCallbacksAndTicksOnOneThread) {
