@@ -10,7 +10,8 @@
 namespace swivel {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr auto kMetresPerMillimetre = static_cast<float>(m_from_mm(1.0));
 constexpr double kLongestRangeM = 65.535;
 constexpr double kAllowedShiftM = 1e-7;
 
@@ -19,14 +20,14 @@ Eigen::Matrix3d rotation_z(double angle_rad) {
 }
 
 // Invalid is NaN, which the arithmetic then carries to x, y and z: a loop without a branch.
-void read_ranges(const LineReadings& readings, std::size_t count, double* ranges_m) {
+void read_ranges(const LineReadings& readings, std::size_t count, float* ranges_m) {
   const std::uint16_t* const ranges_mm = readings.ranges_mm.data();
-  const double min_mm = readings.range_min_mm;
-  const double max_mm = readings.range_max_mm;
+  const float min_mm = readings.range_min_mm;
+  const float max_mm = readings.range_max_mm;
   for (std::size_t beam = 0; beam < count; ++beam) {
-    const double range_mm = ranges_mm[beam];
-    const double not_too_near_mm = range_mm < min_mm ? kNaN : range_mm;
-    ranges_m[beam] = m_from_mm(range_mm > max_mm ? kNaN : not_too_near_mm);
+    const float range_mm = ranges_mm[beam];
+    const float not_too_near_mm = range_mm < min_mm ? kNaN : range_mm;
+    ranges_m[beam] = (range_mm > max_mm ? kNaN : not_too_near_mm) * kMetresPerMillimetre;
   }
 }
 
@@ -35,7 +36,7 @@ void read_ranges(const LineReadings& readings, std::size_t count, double* ranges
 LineAssembler::LineAssembler(const ForwardModel& model)
     : model_(model),
       tolerance_rad_(kAllowedShiftM / (kLongestRangeM * static_cast<double>(model.beam_count()))),
-      angle_per_beam_rad_(kNaN),
+      angle_per_beam_rad_(std::numeric_limits<double>::quiet_NaN()),
       directions_(3, model.beam_count()),
       lever_arms_m_(3, model.beam_count()),
       ranges_m_(model.beam_count()),
@@ -56,7 +57,8 @@ void LineAssembler::assemble(const LineReadings& readings,
   read_line(readings);
   for (std::size_t beam = 0; beam < model_.beam_count(); ++beam) {
     const Eigen::Vector3f point =
-        model_.point(beam, ranges_m_[beam], axis_angles_rad[beam]).cast<float>();
+        model_.point(beam, static_cast<double>(ranges_m_[beam]), axis_angles_rad[beam])
+            .cast<float>();
     row[beam] = {point.x(), point.y(), point.z(), intensities_[beam]};
   }
 }
@@ -66,8 +68,9 @@ void LineAssembler::turn_beams(double angle_per_beam_rad) {
   for (Eigen::Index beam = 0; beam < directions_.cols(); ++beam) {
     const Eigen::Matrix3d turn = rotation_z(static_cast<double>(beam) * angle_per_beam_rad);
     const double beam_angle_rad = model_.beam_angle_rad(static_cast<std::size_t>(beam));
-    directions_.col(beam) = turn * T_axis_lidar.linear() * beam_direction_in_lidar(beam_angle_rad);
-    lever_arms_m_.col(beam) = turn * T_axis_lidar.translation();
+    directions_.col(beam) =
+        (turn * T_axis_lidar.linear() * beam_direction_in_lidar(beam_angle_rad)).cast<float>();
+    lever_arms_m_.col(beam) = (turn * T_axis_lidar.translation()).cast<float>();
   }
   angle_per_beam_rad_ = angle_per_beam_rad;
 }
@@ -83,21 +86,20 @@ void LineAssembler::read_line(const LineReadings& readings) {
   std::fill(intensities_.begin() + static_cast<std::ptrdiff_t>(bright), intensities_.end(), 0.0F);
 }
 
+// R (r d + l) + o in floats: the compiler takes four beams at a time.
 void LineAssembler::project(const Eigen::Matrix3d& R_base_turned, CloudPoint* row) const {
-  const Eigen::Vector3d origin_m = model_.rig().T_base_axis.translation();
-  const double* const range_m = ranges_m_.data();
+  const Eigen::Matrix3f R = R_base_turned.cast<float>();
+  const Eigen::Vector3f origin_m = model_.rig().T_base_axis.translation().cast<float>();
   const Eigen::Index beams = directions_.cols();
   for (Eigen::Index beam = 0; beam < beams; ++beam) {
-    const double x = range_m[beam] * directions_(0, beam) + lever_arms_m_(0, beam);
-    const double y = range_m[beam] * directions_(1, beam) + lever_arms_m_(1, beam);
-    const double z = range_m[beam] * directions_(2, beam) + lever_arms_m_(2, beam);
-    row[beam].x_m = static_cast<float>(R_base_turned(0, 0) * x + R_base_turned(0, 1) * y +
-                                       R_base_turned(0, 2) * z + origin_m.x());
-    row[beam].y_m = static_cast<float>(R_base_turned(1, 0) * x + R_base_turned(1, 1) * y +
-                                       R_base_turned(1, 2) * z + origin_m.y());
-    row[beam].z_m = static_cast<float>(R_base_turned(2, 0) * x + R_base_turned(2, 1) * y +
-                                       R_base_turned(2, 2) * z + origin_m.z());
-    row[beam].intensity = intensities_[static_cast<std::size_t>(beam)];
+    const float range_m = ranges_m_[static_cast<std::size_t>(beam)];
+    const float x = range_m * directions_(0, beam) + lever_arms_m_(0, beam);
+    const float y = range_m * directions_(1, beam) + lever_arms_m_(1, beam);
+    const float z = range_m * directions_(2, beam) + lever_arms_m_(2, beam);
+    row[beam] = {R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + origin_m.x(),
+                 R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + origin_m.y(),
+                 R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + origin_m.z(),
+                 intensities_[static_cast<std::size_t>(beam)]};
   }
 }
 

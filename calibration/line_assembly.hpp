@@ -25,7 +25,8 @@ class LineAssembler {
 
   // Writes model().beam_count() points to row: beam k at axis angle
   // axis_angle_rad + k * angle_per_beam_rad. An invalid beam is NaN with its intensity; without
-  // intensities that is 0. Within 1e-7 m of ForwardModel::point, and the rounding to float.
+  // intensities that is 0. Within 3e-7 of the range of ForwardModel::point, which is the rounding
+  // to float: 3 um at 10 m, where the sensor says millimetres.
   // Quick as long as angle_per_beam_rad stays what it was, as it does within a sweep.
   void assemble(const LineReadings& readings, double axis_angle_rad, double angle_per_beam_rad,
                 CloudPoint* row);
@@ -46,9 +47,9 @@ class LineAssembler {
   double angle_per_beam_rad_;
   // Beam k's direction and the lever arm, already turned by k * angle_per_beam_rad_; a row each
   // of x, y, z, so that the compiler can take several beams at a time.
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> directions_;
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> lever_arms_m_;
-  std::vector<double> ranges_m_;    // of the line in work; NaN where invalid
+  Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor> directions_;
+  Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor> lever_arms_m_;
+  std::vector<float> ranges_m_;     // of the line in work; NaN where invalid
   std::vector<float> intensities_;  // of the line in work
 };
 

@@ -22,7 +22,7 @@ constexpr int kRefinements = 4;
 constexpr double kKeptSigmas = 3.0;    // of the points that a plane is fitted to
 constexpr double kSharedStripM = 0.1;  // about another plane, where points could be either's
 constexpr double kThickest = 0.9;      // rms over band: evenly filled space has more
-constexpr std::size_t kLeastPoints = 50;
+constexpr std::size_t kLeastPointsOfAPlane = 50;
 constexpr std::size_t kOtherPlanes = 6;  // floor, roof, tables: looked for besides the walls
 
 // Distance from a plane, positive on the rig's side.
@@ -68,7 +68,7 @@ std::optional<Plane> segment(const PclCloud::Ptr& cloud, double band_m) {
   pcl::Indices inliers;
   consensus.getModelCoefficients(found);
   consensus.getInliers(inliers);
-  if (found.size() < 4 || inliers.size() < kLeastPoints) return std::nullopt;
+  if (found.size() < 4 || inliers.size() < kLeastPointsOfAPlane) return std::nullopt;
   Plane plane = facing_origin(found.head<3>().cast<double>(), static_cast<double>(found[3]));
   plane.points = inliers.size();
   return plane;
@@ -119,7 +119,7 @@ Moments moments_near(const Points& points, const std::vector<Plane>& planes, std
 
 // Total least squares, eq. (8): the normal is the direction of least scatter.
 std::optional<Plane> fit(const Moments& moments) {
-  if (moments.count < kLeastPoints) return std::nullopt;
+  if (moments.count < kLeastPointsOfAPlane) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.scatter());
   const Eigen::Vector3d normal = solver.eigenvectors().col(0);
   Plane plane = facing_origin(normal, -normal.dot(moments.mean()));
@@ -152,7 +152,7 @@ std::vector<Plane> find_roughly(const Points& points, std::size_t count,
   const PclCloud::Ptr rest = sample(points, options.sampled);
   const auto share =
       static_cast<std::size_t>(options.least_share * static_cast<double>(rest->size()));
-  const std::size_t least = std::max(kLeastPoints, share);
+  const std::size_t least = std::max(kLeastPointsOfAPlane, share);
   std::vector<Plane> planes;
   while (planes.size() < count && rest->size() >= least) {
     const auto plane = segment(rest, options.band_m);

@@ -11,7 +11,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::size_t kLeastPoints = 50;
+constexpr std::size_t kLeastPointsInRing = 50;
 
 // The mean and the outline are two views of one plate; further apart than this and than four
 // sigma, there is more or less in the ring than the plate.
@@ -81,7 +81,7 @@ AttitudeEstimate estimate_by_ring_mean(const OrganisedCloud& cloud, const PlateG
   AttitudeEstimate estimate;
   estimate.points_used = ring.points.size();
   estimate.edges_used = 2 * ring.lines;
-  if (ring.points.size() < kLeastPoints) {
+  if (ring.points.size() < kLeastPointsInRing) {
     return refusal(estimate, AttitudeVerdict::kNoPlate,
                    in_words("no plate: only ", ring.points.size(), " points in the ring"));
   }

@@ -55,7 +55,8 @@ LidarName lidar_name(const msg::Health& health) {
   return lidar;
 }
 
-int calibrate(const CommonOptions& options, const std::string& calibration_path, StopSignal& stop) {
+void calibrate(const CommonOptions& options, const std::string& calibration_path,
+               StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
   if (!rig.plate) throw ConfigurationError(rig.path + ": has no 'plate' to calibrate");
   Participant participant(options.participant("alpha_calibrator", rig.rig));
@@ -89,24 +90,18 @@ int calibrate(const CommonOptions& options, const std::string& calibration_path,
   });
   participant.start();
   store.publish_saved(rig.rig);
-  while (!stop.wait_for(std::chrono::hours(1))) {
-  }
+  stop.wait();
   participant.stop();
-  return kExitOk;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  StopSignal stop;
-  CLI::App app("Calibrates the plate's mounting angle alpha from the walls of a room",
-               "alpha_calibrator");
-  CommonOptions options;
+  ParticipantProgram program(
+      "alpha_calibrator", "Calibrates the plate's mounting angle alpha from the walls of a room");
   std::string calibration_path;
-  add_common_options(app, options);
-  app.add_option("--calibration", calibration_path, "Where the calibration is kept");
-  return run_program(app, argc, argv, [&] {
-    start_log("alpha_calibrator", options.log_level);
-    return calibrate(options, calibration_path, stop);
+  program.add_option("--calibration", calibration_path, "Where the calibration is kept");
+  return program.run(argc, argv, [&](const CommonOptions& options, StopSignal& stop) {
+    calibrate(options, calibration_path, stop);
   });
 }

@@ -81,7 +81,7 @@ class CorrectionStage {
   std::uint64_t uncorrected_ = 0;
 };
 
-int correct(const CommonOptions& options, StopSignal& stop) {
+void correct(const CommonOptions& options, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
   Participant participant(options.participant("attitude_corrector", rig.rig));
   HealthReporter health(participant);
@@ -93,21 +93,14 @@ int correct(const CommonOptions& options, StopSignal& stop) {
   participant.subscribe<PointCloud2>(kRawCloudTopic, [&](const auto& cloud) { stage.take(cloud); });
   participant.on_tick(std::chrono::seconds(1), [&] { stage.report(); });
   participant.start();
-  while (!stop.wait_for(std::chrono::hours(1))) {
-  }
+  stop.wait();
   participant.stop();
-  return kExitOk;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  StopSignal stop;
-  CLI::App app("Corrects the attitude of raw clouds by the plate", "attitude_corrector");
-  CommonOptions options;
-  add_common_options(app, options);
-  return run_program(app, argc, argv, [&] {
-    start_log("attitude_corrector", options.log_level);
-    return correct(options, stop);
-  });
+  ParticipantProgram program("attitude_corrector",
+                             "Corrects the attitude of raw clouds by the plate");
+  return program.run(argc, argv, correct);
 }

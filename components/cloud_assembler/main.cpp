@@ -64,7 +64,7 @@ void report(const Assembler& assembler, const SweepPublisher& publisher, HealthR
                    counters.lines_received == 0 ? "waiting for scan lines" : "assembling");
 }
 
-int assemble(const CommonOptions& options, StopSignal& stop) {
+void assemble(const CommonOptions& options, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
   Participant participant(options.participant("cloud_assembler", rig.rig));
   HealthReporter health(participant);
@@ -81,21 +81,14 @@ int assemble(const CommonOptions& options, StopSignal& stop) {
     report(assembler, publisher, health);
   });
   participant.start();
-  while (!stop.wait_for(std::chrono::hours(1))) {
-  }
+  stop.wait();
   participant.stop();
-  return kExitOk;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  StopSignal stop;
-  CLI::App app("Assembles scan lines and axis angles into organised clouds", "cloud_assembler");
-  CommonOptions options;
-  add_common_options(app, options);
-  return run_program(app, argc, argv, [&] {
-    start_log("cloud_assembler", options.log_level);
-    return assemble(options, stop);
-  });
+  ParticipantProgram program("cloud_assembler",
+                             "Assembles scan lines and axis angles into organised clouds");
+  return program.run(argc, argv, assemble);
 }

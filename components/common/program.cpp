@@ -4,6 +4,9 @@
 #include <spdlog/spdlog.h>
 #include <time.h>
 
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <iostream>
 
@@ -24,6 +27,11 @@ bool StopSignal::wait_for(std::chrono::milliseconds timeout) {
   const timespec time_left{seconds.count(), rest.count()};
   if (!received_) received_ = sigtimedwait(&signals_, nullptr, &time_left) > 0;
   return received_;
+}
+
+void StopSignal::wait() {
+  while (!wait_for(std::chrono::hours(1))) {
+  }
 }
 
 ParticipantOptions CommonOptions::participant(const std::string& name,
@@ -83,6 +91,28 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     std::cerr << app.get_name() << ": unexpected: " << error.what() << '\n';
     return kExitInternal;
   }
+}
+
+ParticipantProgram::ParticipantProgram(std::string name, const std::string& purpose)
+    : name_(std::move(name)), app_(std::make_unique<CLI::App>(purpose, name_)) {
+  add_common_options(*app_, options_);
+}
+
+ParticipantProgram::~ParticipantProgram() = default;
+
+void ParticipantProgram::add_option(const std::string& name, std::string& value,
+                                    const std::string& purpose) {
+  app_->add_option(name, value, purpose);
+}
+
+int ParticipantProgram::run(
+    int argc, char** argv,
+    const std::function<void(const CommonOptions& options, StopSignal& stop)>& body) {
+  return run_program(*app_, argc, argv, [&] {
+    start_log(name_, options_.log_level);
+    body(options_, stop_);
+    return kExitOk;
+  });
 }
 
 }  // namespace swivel

@@ -4,15 +4,17 @@
 
 #include <signal.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 #include "components/dds/participant.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace swivel {
 
@@ -45,6 +47,7 @@ class StopSignal {
   // True once the program was told to stop.
   bool wait_for(std::chrono::milliseconds timeout);
   bool received() { return wait_for(std::chrono::milliseconds(0)); }
+  void wait();
 
  private:
   sigset_t signals_;
@@ -71,5 +74,25 @@ void start_log(const std::string& program, const std::string& level);
 
 // Parses the options, runs body, turns what it throws into one line and an exit code.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+// The main() of a participant: the common options and its own, its log, its end.
+class ParticipantProgram {
+ public:
+  ParticipantProgram(std::string name, const std::string& purpose);
+  ~ParticipantProgram();
+
+  // An option of this participant alone; empty if it is not given.
+  void add_option(const std::string& name, std::string& value, const std::string& purpose);
+
+  // The body returns once it was told to stop and has stopped.
+  int run(int argc, char** argv,
+          const std::function<void(const CommonOptions& options, StopSignal& stop)>& body);
+
+ private:
+  StopSignal stop_;  // before any thread
+  std::string name_;
+  CommonOptions options_;
+  std::unique_ptr<CLI::App> app_;
+};
 
 }  // namespace swivel

@@ -91,7 +91,7 @@ LidarSection lidar_of(const RigFile& rig, const std::string& address) {
   return lidar;
 }
 
-int read(const CommonOptions& options, const std::string& address, StopSignal& stop) {
+void read(const CommonOptions& options, const std::string& address, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
   const LidarSection lidar = lidar_of(rig, address);
   Participant participant(options.participant("hokuyo_reader", rig.rig));
@@ -106,25 +106,19 @@ int read(const CommonOptions& options, const std::string& address, StopSignal& s
   });
   participant.start();
   std::thread session([&] { client.run(); });
-  while (!stop.wait_for(std::chrono::hours(1))) {
-  }
+  stop.wait();
   client.stop();
   session.join();
   participant.stop();
-  return kExitOk;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  StopSignal stop;
-  CLI::App app("Reads a Hokuyo lidar and publishes its scan lines", "hokuyo_reader");
-  CommonOptions options;
+  ParticipantProgram program("hokuyo_reader", "Reads a Hokuyo lidar and publishes its scan lines");
   std::string address;
-  add_common_options(app, options);
-  app.add_option("--lidar", address, "tcp://HOST:PORT or /dev/NAME, instead of the rig file's");
-  return run_program(app, argc, argv, [&] {
-    start_log("hokuyo_reader", options.log_level);
-    return read(options, address, stop);
+  program.add_option("--lidar", address, "tcp://HOST:PORT or /dev/NAME, instead of the rig file's");
+  return program.run(argc, argv, [&](const CommonOptions& options, StopSignal& stop) {
+    read(options, address, stop);
   });
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMostBeams = 20000;
 constexpr double kMostSweeps = 10000;
-constexpr double kMostLines = 1e6;  // of a sweep
+constexpr double kMostLinesOfASweep = 1e6;
 
 // The keys and values of the file. The first thing found wrong is kept; what is read after it
 // is of no use and is thrown away with it.
@@ -110,7 +110,7 @@ RecordingFacts::Plate read_plate(MetaTable& table) {
 
 void read_sweeps(MetaTable& table, CaseMeta& meta) {
   const auto count = static_cast<std::size_t>(table.number("sweeps", 1, kMostSweeps));
-  const auto lines = table.numbers("lines_per_sweep", count, 1, kMostLines);
+  const auto lines = table.numbers("lines_per_sweep", count, 1, kMostLinesOfASweep);
   meta.sweeps.resize(count);
   for (std::size_t sweep = 0; sweep < count; ++sweep) {
     meta.sweeps[sweep].lines = static_cast<std::uint32_t>(lines[sweep]);

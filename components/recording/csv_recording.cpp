@@ -12,7 +12,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::size_t kMostLines = 1'000'000;
+constexpr std::size_t kMostLinesOfARecording = 1'000'000;
 constexpr std::int64_t kLongestGap_ns = 2'000'000'000;  // a longer pause ends a sweep
 
 // A shorter run, or a smaller turn, is the axis settling and no sweep.
@@ -32,7 +32,8 @@ Result<std::vector<TimedAngle>> read_angles(CsvRows& rows, std::int64_t line_dur
     const auto read = rows.read(row);
     if (!read) return Failure{read.reason()};
     if (!*read) break;
-    if (angles.size() == kMostLines) return rows.failure("the recording is too long; cut it");
+    if (angles.size() == kMostLinesOfARecording)
+      return rows.failure("the recording is too long; cut it");
     if (!angles.empty() && row.stamp_ns <= angles.back().stamp_ns + line_duration_ns + 2 * kHair_ns)
       return rows.failure("the scan begins before the one before it has ended; stamps are wrong");
     if (!angles.empty() && row.axis_angle_deg.has_value() != angles.back().angle_deg.has_value())

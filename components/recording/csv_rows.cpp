@@ -46,6 +46,8 @@ Outcome CsvRows::read_header() {
     }
     collect_metadata(**line, metadata);
   }
+  if (metadata.empty())
+    return lines_.failure("this is no recording: it does not begin with lines of `# name: value`");
   const auto header = header_from(metadata);
   if (!header) return lines_.failure(header.reason());
   header_ = *header;

@@ -74,7 +74,7 @@ void report(const Sequencer& sequencer, HealthReporter& health) {
   health.set_state(now.ready ? msg::HEALTH_OK : msg::HEALTH_WAITING, now.doing);
 }
 
-int sequence(const CommonOptions& options, const std::string& address, StopSignal& stop) {
+void sequence(const CommonOptions& options, const std::string& address, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
   const SequencerOptions sequencer_settings = sequencer_options(rig, address);
   Participant participant(options.participant("stepper_sequencer", rig.rig));
@@ -92,24 +92,19 @@ int sequence(const CommonOptions& options, const std::string& address, StopSigna
   participant.on_tick(std::chrono::milliseconds(200), [&] { report(sequencer, health); });
   participant.start();
   sequencer.start();
-  while (!stop.wait_for(std::chrono::hours(1))) {
-  }
+  stop.wait();
   sequencer.stop();  // first of all
   participant.stop();
-  return kExitOk;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  StopSignal stop;
-  CLI::App app("Turns the lidar through sweeps", "stepper_sequencer");
-  CommonOptions options;
+  ParticipantProgram program("stepper_sequencer", "Turns the lidar through sweeps");
   std::string address;
-  add_common_options(app, options);
-  app.add_option("--stepper", address, "/dev/NAME[@BAUD] or tcp://HOST:PORT, instead of the rig's");
-  return run_program(app, argc, argv, [&] {
-    start_log("stepper_sequencer", options.log_level);
-    return sequence(options, address, stop);
+  program.add_option("--stepper", address,
+                     "/dev/NAME[@BAUD] or tcp://HOST:PORT, instead of the rig's");
+  return program.run(argc, argv, [&](const CommonOptions& options, StopSignal& stop) {
+    sequence(options, address, stop);
   });
 }

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <optional>
+#include <utility>
 
 #include "components/common/sweep_requester.hpp"
 
@@ -11,7 +12,8 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kAnswer = std::chrono::seconds(10);
-constexpr auto kSilence = std::chrono::seconds(150);  // the calibrator itself gives up at 120
+constexpr auto kSilenceOfACalibration =
+    std::chrono::seconds(150);  // the calibrator itself gives up at 120
 
 }  // namespace
 
@@ -49,7 +51,7 @@ void LiveCalibration::run(int mode, int count, double room_yaw_deg, StopSignal& 
                 << " sweeps: " << step.words() << std::endl;
       if (step.state() == msg::CALIBRATION_DONE) return;
     }
-    if (steady_clock::now() - last_news > (answered ? kSilence : kAnswer)) {
+    if (steady_clock::now() - last_news > (answered ? kSilenceOfACalibration : kAnswer)) {
       throw ExitError(kExitUnavailable, "alpha_calibrator does not answer; see: swivel status");
     }
   }

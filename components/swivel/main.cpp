@@ -1,4 +1,8 @@
 // swivel: the command line tool. Data goes to stdout, logs to stderr.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
 #include "components/common/program.hpp"
 #include "components/swivel/verbs.hpp"
 
@@ -7,7 +11,6 @@ int main(int argc, char** argv) {
   StopSignal stop;
   CLI::App app("Swivel: an accurate 3D scanner from a 2D lidar on an open-loop stepper", "swivel");
   app.set_version_flag("--version", "swivel " SWIVEL_VERSION);
-  app.require_subcommand(1);
   Verb verb;
   add_up(app, stop, verb);
   add_status(app, stop, verb);
@@ -16,5 +19,8 @@ int main(int argc, char** argv) {
   add_replay(app, stop, verb);
   add_process(app, verb);
   add_demo(app, stop, verb);
-  return run_program(app, argc, argv, [&] { return verb(); });
+  return run_program(app, argc, argv, [&] {
+    if (!verb) throw ExitError(kExitUsage, "say what to do; the verbs:\n" + app.help());
+    return verb();
+  });
 }

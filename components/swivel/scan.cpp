@@ -12,7 +12,7 @@ namespace {
 using std::chrono::steady_clock;
 
 // Of homing, or of one sweep of the slowest mode with its way there and back.
-constexpr auto kSilence = std::chrono::seconds(90);
+constexpr auto kSilenceOfAScan = std::chrono::seconds(90);
 
 // Of another's sweep that is just returning.
 constexpr auto kBusy = std::chrono::seconds(20);
@@ -31,6 +31,8 @@ bool is_good(const ProcessedSweep& sweep) {
   return sweep.sweep.complete() && Corrector::in_base(sweep.attitude.verdict());
 }
 
+}  // namespace
+
 void check_mode(const RigFile& rig, int mode) {
   if (rig.modes.lines.count(mode) != 0) return;
   std::string known;
@@ -39,17 +41,14 @@ void check_mode(const RigFile& rig, int mode) {
                   "mode " + std::to_string(mode) + " is not one of this rig's:" + known);
 }
 
-}  // namespace
-
 const std::vector<std::string>& scanning_participants() {
   static const std::vector<std::string> names{"stepper_sequencer", "hokuyo_reader",
                                               "cloud_assembler", "attitude_corrector"};
   return names;
 }
 
-int scan(LiveSweeps& sweeps, const RigFile& rig, const ScanOptions& options, OutputFolder& output,
-         StopSignal& stop, const Remark& remark) {
-  check_mode(rig, options.mode);
+int scan(LiveSweeps& sweeps, const ScanOptions& options, OutputFolder& output, StopSignal& stop,
+         const Remark& remark) {
   if (!sweeps.await_idle(kBusy)) {
     throw ExitError(kExitTryAgain, "the sequencer is busy with another request; try again later");
   }
@@ -63,7 +62,7 @@ int scan(LiveSweeps& sweeps, const RigFile& rig, const ScanOptions& options, Out
       throw ExitError(kExitTryAgain, "stopped; the sweep was cancelled");
     }
     auto news = sweeps.wait(std::chrono::milliseconds(100));
-    if (!news && steady_clock::now() - last_news > kSilence) {
+    if (!news && steady_clock::now() - last_news > kSilenceOfAScan) {
       throw ExitError(kExitUnavailable, "no news of the sweep for 90 s; see: swivel status");
     }
     if (!news) continue;

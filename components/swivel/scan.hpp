@@ -17,6 +17,9 @@ struct ScanOptions {
   msg::SweepSequence action_sequence = msg::SEQUENCE_IMPROVED;
 };
 
+// Throws ExitError where the rig has no such mode.
+void check_mode(const RigFile& rig, int mode);
+
 // The participants whose work a scan is.
 const std::vector<std::string>& scanning_participants();
 
@@ -25,7 +28,7 @@ using Remark = std::function<nlohmann::ordered_json(const ProcessedSweep&)>;
 
 // Returns how many sweeps were whole and their attitude known. Throws ExitError when the scan
 // comes to nothing; a stop signal cancels it.
-int scan(LiveSweeps& sweeps, const RigFile& rig, const ScanOptions& options, OutputFolder& output,
-         StopSignal& stop, const Remark& remark = {});
+int scan(LiveSweeps& sweeps, const ScanOptions& options, OutputFolder& output, StopSignal& stop,
+         const Remark& remark = {});
 
 }  // namespace swivel

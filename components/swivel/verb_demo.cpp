@@ -71,12 +71,13 @@ nlohmann::ordered_json against_truth(const ProcessedSweep& sweep, const std::str
 int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal& stop) {
   start_log("swivel", "warning");
   const RigFile rig = load_rig_file(common.rig_file);
+  for (const int mode : options.modes) check_mode(rig, mode);
   OutputFolder output(options.folder, "simulated bench", rig, {});
   const std::string truth_path = options.folder + "/truth.csv";
-  ChildProcess bench(
-      "swivel-bench",
-      {"--truth", truth_path, "--seed", std::to_string(options.seed), "--log-level", "warning"},
-      true);
+  ChildProcess bench("swivel-bench",
+                     {"--truth", truth_path, "--seed", std::to_string(options.seed),
+                      "--home-sigma-deg", kHomeSigma_deg, "--log-level", "warning"},
+                     true);
   const BenchAddresses addresses = await_bench(bench);
   CommonOptions quiet = common;
   quiet.log_level = "warning";
@@ -97,7 +98,7 @@ int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal
   int good = 0;
   for (const int mode : options.modes) {
     std::cout << "scan in mode " << mode << " ..." << std::endl;
-    good += scan(sweeps, rig, {mode, 1, msg::SEQUENCE_IMPROVED}, output, stop,
+    good += scan(sweeps, {mode, 1, msg::SEQUENCE_IMPROVED}, output, stop,
                  [&](const ProcessedSweep& sweep) { return against_truth(sweep, truth_path); });
   }
   output.note("true_alpha_deg", TruthFile(truth_path).number("alpha_deg").value_or(NAN));

@@ -24,6 +24,7 @@ const std::map<std::string, msg::SweepSequence> kSequences{
 int run_scan(const CommonOptions& common, const ScanVerbOptions& options, StopSignal& stop) {
   start_log("swivel", common.log_level == "info" ? "warning" : common.log_level);
   const RigFile rig = load_rig_file(common.rig_file);
+  check_mode(rig, options.scan.mode);
   OutputFolder output(options.folder, rig.rig, rig, options.kinds);
   Participant participant(common.participant("swivel_scan", rig.rig));
   const Roll roll(participant);
@@ -31,7 +32,7 @@ int run_scan(const CommonOptions& common, const ScanVerbOptions& options, StopSi
   participant.start();
   const std::string missing = roll.await(scanning_participants(), std::chrono::seconds(30));
   if (!missing.empty()) throw ExitError(kExitUnavailable, missing + "; start them with: swivel up");
-  const int good = scan(sweeps, rig, options.scan, output, stop);
+  const int good = scan(sweeps, options.scan, output, stop);
   output.finish();
   return good == options.scan.count ? kExitOk : kExitBadData;
 }

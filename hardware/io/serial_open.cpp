@@ -33,7 +33,7 @@ Result<speed_t> speed_of(const std::string& baud) {
   return Failure{"the baud rate '" + baud + "' is not supported: 9600 to 1000000, mostly 115200"};
 }
 
-Result<PathAndSpeed> split(const std::string& path_and_baud) {
+Result<PathAndSpeed> split_speed(const std::string& path_and_baud) {
   const auto at = path_and_baud.rfind('@');
   const bool given = at != std::string::npos;
   const Result<speed_t> speed = speed_of(given ? path_and_baud.substr(at + 1) : kDefaultBaud);
@@ -84,7 +84,7 @@ Outcome set_up(int descriptor, speed_t speed) {
 }  // namespace
 
 Result<int> serial_open(const std::string& path_and_baud) {
-  const Result<PathAndSpeed> wanted = split(path_and_baud);
+  const Result<PathAndSpeed> wanted = split_speed(path_and_baud);
   if (!wanted) return Failure{wanted.reason()};
   const int descriptor = ::open(wanted->path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return Failure{open_reason(errno)};

@@ -44,7 +44,7 @@ bool is_port(const std::string& text) {
   return error == std::errc{} && stopped == end && port >= 1 && port <= 65535;
 }
 
-Result<HostAndPort> split(const std::string& host_and_port) {
+Result<HostAndPort> split_port(const std::string& host_and_port) {
   const auto colon = host_and_port.rfind(':');
   if (colon == std::string::npos || colon == 0)
     return Failure{"a TCP address reads tcp://HOST:PORT"};
@@ -141,7 +141,7 @@ Result<int> connect_one(const SocketAddress& target, Deadline deadline, const Wa
 
 Result<int> tcp_connect(const std::string& host_and_port, Deadline deadline,
                         const WakeUp* wake_up) {
-  const Result<HostAndPort> target = split(host_and_port);
+  const Result<HostAndPort> target = split_port(host_and_port);
   if (!target) return Failure{target.reason()};
   const std::optional<Lookup> lookup = look_up_until(*target, deadline, wake_up);
   if (!lookup)

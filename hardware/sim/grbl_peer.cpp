@@ -6,8 +6,6 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kMillisecondNs = 1'000'000;
-constexpr std::int64_t kAlarmSilenceNs = 500 * kMillisecondNs;
 constexpr std::size_t kReceiveBuffer = 127;  // 128 bytes, one of which marks its end
 constexpr std::size_t kLongestLine = 79;
 constexpr int kPlannerBlocks = 15;
@@ -49,7 +47,7 @@ void GrblPeer::reset(std::int64_t now_ns) {
   if (lost) output_ += state_ == State::kHome ? "ALARM:6\r\n" : "ALARM:3\r\n";
   const bool locked = lost || dead_ || state_ == State::kAlarm || state_ == State::kSleep;
   state_ = locked ? State::kAlarm : State::kIdle;
-  restart(lost ? kAlarmSilenceNs : 20 * kMillisecondNs, now_ns);
+  restart(lost ? kAlarmSilence_ns : 20 * kMillisecond_ns, now_ns);
 }
 
 void GrblPeer::alarm(int number) {
@@ -144,7 +142,7 @@ void GrblPeer::advance_homing(std::int64_t now_ns) {
       output_ += "ALARM:9\r\n";
       axis_.halt(now_ns);
       state_ = State::kAlarm;
-      return restart(kAlarmSilenceNs, now_ns);
+      return restart(kAlarmSilence_ns, now_ns);
     }
     if (status_requested_) output_ += status_report(now_ns);
   }
@@ -159,7 +157,7 @@ void GrblPeer::advance_motion(std::int64_t now_ns) {
   if (moving && settings_.hard_limits() && axis_.at_switch(settings_, now_ns)) {
     axis_.halt(now_ns);
     alarm(1);
-    quiet_until_ns_ = now_ns + kAlarmSilenceNs;
+    quiet_until_ns_ = now_ns + kAlarmSilence_ns;
   } else if (!moving && (state_ == State::kRun || state_ == State::kJog)) {
     state_ = State::kIdle;
   }

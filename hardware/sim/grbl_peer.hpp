@@ -13,8 +13,11 @@
 #include "hardware/sim/grbl_settings.hpp"
 #include "hardware/sim/grbl_words.hpp"
 #include "hardware/sim/motor_axis.hpp"
+#include "hardware/sim/sim_time.hpp"
 
 namespace swivel::sim {
+
+constexpr std::int64_t kAlarmSilence_ns = 500 * kMillisecond_ns;
 
 class GrblPeer {
  public:

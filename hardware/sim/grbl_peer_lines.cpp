@@ -9,7 +9,6 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kAlarmSilenceNs = 500'000'000;
 constexpr double kMmPerInch = 25.4;
 
 std::string upper_case_without_blanks(const std::string& line) {
@@ -128,7 +127,7 @@ GrblError GrblPeer::execute_motion(std::string_view text, std::int64_t now_ns) {
   if (beyond_travel(target)) {
     axis_.halt(now_ns);
     alarm(2);
-    quiet_until_ns_ = now_ns + kAlarmSilenceNs;
+    quiet_until_ns_ = now_ns + kAlarmSilence_ns;
     return kNoError;
   }
   if (target == axis_.planned_end_deg(settings_)) return kNoError;

@@ -8,7 +8,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr double kMillisecondNs = 1e6;
+constexpr double kNsPerMs = 1e6;
 constexpr std::uint64_t kSendStream = 0x5E4D;  // keeps the jitter apart from the ranges' noise
 
 }  // namespace
@@ -17,7 +17,7 @@ LidarTiming::LidarTiming(const LidarTimingOptions& options, std::int64_t power_u
                          int steps_per_turn, int last_step, std::uint64_t seed)
     : options_(options),
       power_up_ns_(power_up_ns),
-      period_ns_(options.scan_period_ms * kMillisecondNs),
+      period_ns_(options.scan_period_ms * kNsPerMs),
       steps_per_turn_(steps_per_turn),
       last_step_(last_step),
       seed_(seed),
@@ -38,14 +38,14 @@ std::int64_t LidarTiming::beam0_time_ns(std::uint64_t scan) const {
 std::int64_t LidarTiming::send_time_ns(std::uint64_t scan) const {
   const double last_beam_ns =
       static_cast<double>(beam0_time_ns(scan) - power_up_ns_) + last_step_ * beam_period_ns();
-  const double tick_ns = std::ceil(last_beam_ns / kMillisecondNs) * kMillisecondNs;
+  const double tick_ns = std::ceil(last_beam_ns / kNsPerMs) * kNsPerMs;
   Random random(seed_ ^ kSendStream, scan);
   const double delay_ms = options_.send_delay_ms + random.uniform(0.0, options_.send_jitter_ms);
-  return power_up_ns_ + std::llround(tick_ns + delay_ms * kMillisecondNs);
+  return power_up_ns_ + std::llround(tick_ns + delay_ms * kNsPerMs);
 }
 
 double LidarTiming::counter(double time_ns) const {
-  const double elapsed_ms = (time_ns - static_cast<double>(counter_since_ns_)) / kMillisecondNs;
+  const double elapsed_ms = (time_ns - static_cast<double>(counter_since_ns_)) / kNsPerMs;
   return counter_start_ms_ + elapsed_ms * (1.0 + options_.clock_gain_ppm * 1e-6);
 }
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "hardware/sim/sim_time.hpp"
 
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kKeptNs = 10'000'000'000;  // scan lines look back, but not this far
 
 double seconds(std::int64_t duration_ns) {
@@ -99,7 +99,7 @@ void Motion::brake(std::int64_t now_ns) {
     return (move.target_steps - from) * (rest - move.target_steps) > 0.0;
   };
   while (moves_.size() > 1 && passed(moves_.front())) moves_.pop_front();
-  for (Move& move : moves_) move.end_ns = kNever;
+  for (Move& move : moves_) move.end_ns = kNever_ns;
 }
 
 void Motion::forget_moves() {

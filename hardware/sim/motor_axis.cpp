@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hardware/sim/sim_time.hpp"
+
 namespace swivel::sim {
 namespace {
 
 constexpr double kSlowestStepsS = 30.0;  // GRBL does not go slower, though it says so
 constexpr std::uint64_t kMotorStream = 0x4070;
-
-std::int64_t ns_from_s(double duration_s) {
-  return std::llround(duration_s * 1e9);
-}
 
 }  // namespace
 

@@ -8,22 +8,17 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
-#include <limits>
 #include <system_error>
+
+#include "hardware/sim/sim_time.hpp"
 
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kSlowClient = 1U << 20U;  // bytes that a client may leave unread
 
 bool every(int count, std::uint64_t frame) {
   return count > 0 && frame % static_cast<std::uint64_t>(count) == 0;
-}
-
-std::int64_t ns_from_s(double duration_s) {
-  return std::llround(duration_s * 1e9);
 }
 
 [[noreturn]] void fail(const std::string& what) {
@@ -82,9 +77,9 @@ void ScipServer::add_to(std::vector<pollfd>& waits, std::int64_t now_ns) const {
 
 std::int64_t ScipServer::next_event_ns() const {
   if (back_at_ns_ != 0) return back_at_ns_;
-  if (!client_.open()) return kNever;
+  if (!client_.open()) return kNever_ns;
   const auto scan = sensor_->wanted_scan();
-  const std::int64_t scan_ns = scan ? timing_->send_time_ns(*scan) : kNever;
+  const std::int64_t scan_ns = scan ? timing_->send_time_ns(*scan) : kNever_ns;
   return outgoing_.empty() ? scan_ns
                            : std::min(scan_ns, std::max<std::int64_t>(1, stalled_until_ns_));
 }

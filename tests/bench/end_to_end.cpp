@@ -15,6 +15,7 @@
 #include "components/swivel/child_process.hpp"
 #include "components/swivel/roll.hpp"
 #include "hardware/io/clock.hpp"
+#include "tests/bench/mode_7.hpp"
 
 namespace swivel {
 namespace {
@@ -22,8 +23,6 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr int kDomain = 74;
-constexpr std::uint32_t kLines = 640;
-constexpr std::size_t kBeams = 1081;
 constexpr double kPeriod_ns = 25.04e6;
 constexpr double kSpeed_deg_s = 11.25;
 
@@ -90,7 +89,7 @@ class Sweeper {
     const auto deadline = steady_clock::now() + std::chrono::seconds(20);
     while (clouds_ == before && steady_clock::now() < deadline) usleep(200);
     if (clouds_ == before) throw ExitError(kExitUnavailable, "no cloud came back");
-    usleep(300'000);  // the last samples are acknowledged
+    lines_.wait_until_acknowledged(std::chrono::seconds(5));
     return std::chrono::duration<double, std::milli>(taken_.load() - published_).count();
   }
 

@@ -8,17 +8,12 @@
 
 #include "calibration/forward_model.hpp"
 #include "tests/calibration/plate_case.hpp"
+#include "tests/calibration/yuans_rig.hpp"
 
 namespace swivel {
 namespace {
 
 const PlateGeometry kPlate;
-
-RigGeometry yuans_rig() {
-  RigGeometry rig;
-  rig.T_axis_lidar.translation() << 0.0139, 0.0, 0.0;
-  return rig;
-}
 
 AttitudeEstimate estimate(const OrganisedCloud& cloud) {
   return (*attitude_estimator("ring_mean", yuans_rig()))(cloud, kPlate);
@@ -238,13 +233,13 @@ TEST(RingMean, DegenerateCloudsAreRefusedWithoutACrash) {
 
 // A plate of known azimuth under beams with range noise, from the forward model.
 OrganisedCloud synthetic_sweep(std::size_t lines, double beta_rad, double phase, unsigned seed) {
-  constexpr std::size_t kBeams = 125;  // down to where they pass over the ring
-  const ForwardModel model(yuans_rig(), rad_from_deg(-135.0), rad_from_deg(0.25), kBeams);
+  constexpr std::size_t kLowBeams = 125;  // down to where they pass over the ring
+  const ForwardModel model(yuans_rig(), rad_from_deg(-135.0), rad_from_deg(0.25), kLowBeams);
   std::mt19937 random(seed);
   std::normal_distribution<double> noise_m(0.0, 0.013);
-  OrganisedCloud cloud(lines, kBeams);
+  OrganisedCloud cloud(lines, kLowBeams);
   for (std::size_t line = 0; line < lines; ++line) {
-    for (std::size_t beam = 0; beam < kBeams; ++beam) {
+    for (std::size_t beam = 0; beam < kLowBeams; ++beam) {
       const double turns = static_cast<double>(line) + static_cast<double>(beam) / 1440.0 + phase;
       const double angle_rad = turns * kPi / static_cast<double>(lines);
       const double range_m = kPlate.depth_m / -std::cos(model.beam_angle_rad(beam));

@@ -11,16 +11,17 @@
 #include "components/common/strict_yaml.hpp"
 #include "tests/calibration/plate_case.hpp"
 #include "tests/calibration/unlike_rig.hpp"
+#include "tests/calibration/yuans_rig.hpp"
 
 namespace swivel {
 namespace {
 
 using testing::HasSubstr;
 
-RigFile yuans_rig() {
+RigFile yuans_rig_file() {
   RigFile rig;
   rig.path = "yuan.yaml";
-  rig.geometry.T_axis_lidar.translation() << 0.0139, 0.0, 0.0;
+  rig.geometry = yuans_rig();
   rig.plate = PlateGeometry();
   rig.estimator = "ring_mean";
   return rig;
@@ -83,7 +84,7 @@ class CorrectorOn : public testing::TestWithParam<Eigen::Isometry3d> {};
 
 // p_base = T_base_axis * Rz(phi_offset) * p_axis, and p_start = T_base_axis * p_axis.
 TEST_P(CorrectorOn, TurnsTheCloudAboutTheAxisWhereverThatStands) {
-  RigFile rig = yuans_rig();
+  RigFile rig = yuans_rig_file();
   rig.geometry.T_base_axis = GetParam();
   Corrector corrector(rig);
   ASSERT_TRUE(
@@ -108,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(AnyRig, CorrectorOn,
 
 TEST(Corrector, SaysWhatItDid) {
   OrganisedCloud cloud = recorded().sweeps[0].cloud;
-  const msg::Attitude attitude = Corrector(yuans_rig()).correct(whole_sweep(), cloud);
+  const msg::Attitude attitude = Corrector(yuans_rig_file()).correct(whole_sweep(), cloud);
   EXPECT_EQ(attitude.sweep_id(), 42U);
   EXPECT_EQ(attitude.first_beam_time_ns(), 1'700'000'000'123'456'789);
   EXPECT_EQ(attitude.first_device_stamp_ms(), 77U);
@@ -121,7 +122,7 @@ TEST(Corrector, SaysWhatItDid) {
 }
 
 TEST(Corrector, ACalibrationMovesPhiOffsetFromTheNextSweepOnAndItsSigmaAddsUp) {
-  Corrector corrector(yuans_rig());
+  Corrector corrector(yuans_rig_file());
   OrganisedCloud first = recorded().sweeps[0].cloud, second = first;
   const msg::Attitude drawn = corrector.correct(whole_sweep(), first);
   EXPECT_TRUE(corrector.set_calibration(calibration(28.5, 0.4)).empty());
@@ -135,7 +136,7 @@ TEST(Corrector, ACalibrationMovesPhiOffsetFromTheNextSweepOnAndItsSigmaAddsUp) {
 
 TEST(Corrector, ACalibrationThatIsNoNumberIsNotTaken) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Corrector corrector(yuans_rig());
+  Corrector corrector(yuans_rig_file());
   EXPECT_FALSE(corrector.set_calibration(calibration(nan, 0.1)).empty());
   EXPECT_FALSE(corrector.set_calibration(calibration(29.0, nan)).empty());
   msg::Calibration negative = calibration(29.0, 0.1);
@@ -153,7 +154,7 @@ TEST(Corrector, WithoutAPlateInSightTheCloudStaysBitForBit) {
     if (std::hypot(point.x_m, point.y_m) < 0.2F) point = {NAN, NAN, NAN, 3.0F};
   }
   const OrganisedCloud before = cloud;
-  const msg::Attitude attitude = Corrector(yuans_rig()).correct(whole_sweep(), cloud);
+  const msg::Attitude attitude = Corrector(yuans_rig_file()).correct(whole_sweep(), cloud);
   EXPECT_FALSE(Corrector::in_base(attitude.verdict()));
   EXPECT_FALSE(attitude.reason().empty());
   EXPECT_TRUE(std::isnan(attitude.phi_offset_deg()));
@@ -165,9 +166,9 @@ TEST(Corrector, AnEmptyCloudIsNoPlate) {
   OrganisedCloud nothing, no_beams;
   no_beams.lines = 5;
   EXPECT_FALSE(
-      Corrector::in_base(Corrector(yuans_rig()).correct(whole_sweep(), nothing).verdict()));
+      Corrector::in_base(Corrector(yuans_rig_file()).correct(whole_sweep(), nothing).verdict()));
   EXPECT_FALSE(
-      Corrector::in_base(Corrector(yuans_rig()).correct(whole_sweep(), no_beams).verdict()));
+      Corrector::in_base(Corrector(yuans_rig_file()).correct(whole_sweep(), no_beams).verdict()));
 }
 
 TEST(Corrector, AGapElsewhereIsTold) {
@@ -176,13 +177,13 @@ TEST(Corrector, AGapElsewhereIsTold) {
   sweep.complete(false);
   sweep.lines_missing(3);
   sweep.reason("3 of 40 lines missing");
-  const msg::Attitude attitude = Corrector(yuans_rig()).correct(sweep, cloud);
+  const msg::Attitude attitude = Corrector(yuans_rig_file()).correct(sweep, cloud);
   EXPECT_EQ(attitude.lines_missing(), 3U);
   EXPECT_THAT(attitude.reason(), HasSubstr("3 of 40 lines missing"));
 }
 
 TEST(Corrector, AMeasuredRigPassesThroughBitForBit) {
-  RigFile rig = yuans_rig();
+  RigFile rig = yuans_rig_file();
   rig.axis_measured = true;
   rig.plate.reset();
   OrganisedCloud cloud = recorded().sweeps[0].cloud;
@@ -195,9 +196,9 @@ TEST(Corrector, AMeasuredRigPassesThroughBitForBit) {
 }
 
 TEST(Corrector, CannotStartWithoutWhatItNeeds) {
-  RigFile unknown = yuans_rig();
+  RigFile unknown = yuans_rig_file();
   unknown.estimator = "tea_leaves";
-  RigFile no_plate = yuans_rig();
+  RigFile no_plate = yuans_rig_file();
   no_plate.plate.reset();
   const auto reason = [](const RigFile& rig) -> std::string {
     try {
@@ -210,7 +211,7 @@ TEST(Corrector, CannotStartWithoutWhatItNeeds) {
   EXPECT_THAT(reason(unknown), HasSubstr("tea_leaves"));
   EXPECT_THAT(reason(unknown), HasSubstr("yuan.yaml"));
   EXPECT_THAT(reason(no_plate), HasSubstr("plate"));
-  EXPECT_EQ(reason(yuans_rig()), "");
+  EXPECT_EQ(reason(yuans_rig_file()), "");
 }
 
 }  // namespace

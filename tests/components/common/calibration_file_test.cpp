@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 class CalibrationFile : public testing::Test {
- protected:
+ public:
   CalibrationFile() { fs::create_directories(folder_); }
   ~CalibrationFile() override {
     std::error_code error;

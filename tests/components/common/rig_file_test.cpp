@@ -115,7 +115,7 @@ TEST(RigFiles, EveryBadOneIsRefusedByFileAndLine) {
 }
 
 class WrittenFile : public testing::Test {
- protected:
+ public:
   ~WrittenFile() override { fs::remove(path_); }
 
   std::string refusal_of(const std::string& text) {

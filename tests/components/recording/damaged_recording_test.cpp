@@ -44,8 +44,8 @@ struct Damage {
   const char* words;  // that the reason must hold
 };
 
-void PrintTo(const Damage& damage, std::ostream* out) {
-  *out << damage.file << ": '" << damage.from << "' -> '" << damage.to << "'";
+std::ostream& operator<<(std::ostream& out, const Damage& damage) {
+  return out << damage.file << ": '" << damage.from << "' -> '" << damage.to << "'";
 }
 
 class DamagedCase : public testing::TestWithParam<Damage> {};

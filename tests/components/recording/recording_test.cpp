@@ -64,7 +64,8 @@ double angle_at(const std::vector<msg::AxisSample>& axis, double time_ns) {
 
 double last_beam_ns(const msg::ScanLine& line) {
   return static_cast<double>(line.beam0_time_ns()) +
-         static_cast<double>(line.ranges_mm().size() - 1) * line.beam_period_ns();
+         static_cast<double>(line.ranges_mm().size() - 1) *
+             static_cast<double>(line.beam_period_ns());
 }
 
 std::vector<const msg::ScanLine*> lines_in_window(const Played& played, const msg::Sweep& sweep) {

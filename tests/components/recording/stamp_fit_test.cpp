@@ -13,6 +13,7 @@ constexpr double kNominal_ns = 25e6;
 // What a counter of milliseconds shows of lines that begin evenly.
 std::vector<StampedLine> counted(double first_ns, double period_ns, int lines) {
   std::vector<StampedLine> stamped;
+  stamped.reserve(static_cast<std::size_t>(lines));
   for (int line = 0; line < lines; ++line)
     stamped.push_back({line, std::floor((first_ns + line * period_ns) * 1e-6) * 1e6});
   return stamped;
