@@ -46,6 +46,8 @@ msg::Attitude blank_attitude(const msg::Sweep& sweep) {
   attitude.phi_offset_deg(kUnknown);
   attitude.phi_offset_sigma_deg(kUnknown);
   attitude.residual_mm(kUnknown);
+  attitude.seam_deg(kUnknown);
+  attitude.seam_sigma_deg(kUnknown);
   attitude.lines_expected(sweep.lines_expected());
   attitude.lines_missing(sweep.lines_missing());
   return attitude;
@@ -135,6 +137,8 @@ const char* verdict_word(msg::Verdict verdict) {
       return "foreign_object";
     case msg::VERDICT_LINES_MISSING:
       return "lines_missing";
+    case msg::VERDICT_SEAM_OPEN:
+      return "seam_open";
   }
   return "unknown";
 }
