@@ -25,8 +25,9 @@ struct AttitudeEstimate {
   double beta_sigma_rad = std::numeric_limits<double>::quiet_NaN();
 
   std::size_t points_used = 0;
-  std::size_t edges_used = 0;  // places where a line enters or leaves the plate: two a line
-  double residual_m = std::numeric_limits<double>::quiet_NaN();  // rms height over the plate
+  std::size_t edges_used = 0;  // beams, or pairs of them, that see an edge of the plate
+  double residual_m = std::numeric_limits<double>::quiet_NaN();  // rms distance from the plate
+  std::optional<PlateShape> shape;  // as this sweep shows it, by an estimator that looks at it
 };
 
 // Takes the raw cloud in O', its Z the axis of rotation, the height 0 at the axis frame's origin.

@@ -15,11 +15,16 @@ namespace {
 constexpr double kInsideMarginM = 0.004;
 constexpr double kOutsideMarginM = 0.006;
 
-constexpr double kSearchRad = rad_from_deg(30.0);
-constexpr double kSearchStepRad = rad_from_deg(0.5);
+// The outline is searched for about a first guess, then about the best place found.
+struct Search {
+  double reach_rad;
+  double step_rad;
+  std::size_t most_beams;  // more than these only take time
+};
+constexpr Search kCoarse{rad_from_deg(30.0), rad_from_deg(3.0), 3'000};
+constexpr Search kFine{rad_from_deg(3.0), rad_from_deg(0.5), 10'000};
 constexpr double kFitShare = 0.3;  // of beams in the ring, between plate and no plate
 constexpr double kFitDepthM = 0.010;
-constexpr std::size_t kFitBeams = 10'000;                   // more than these only take time
 constexpr double kSectorHalfWidthRad = rad_from_deg(44.0);  // the corners lie at 45.6 deg
 
 // Of the beams on the plate, how many must have measured in the ring. At a range noise of
@@ -51,8 +56,8 @@ class CellGrid {
   CellGrid(const PlateGeometry& plate, double beta_rad) : plate_(plate), beta_rad_(beta_rad) {}
 
   Tally& cell_of(const PlateBeam& beam) {
-    const double azimuth_rad = std::remainder(beam.azimuth_rad - beta_rad_, 2 * kPi);
-    const double radius_m = std::hypot(beam.x_m, beam.y_m);
+    const double azimuth_rad = beam.azimuth_rad - beta_rad_;  // both on the side of X' > 0
+    const double radius_m = std::sqrt(beam.x_m * beam.x_m + beam.y_m * beam.y_m);
     const double part =
         (radius_m - plate_.ring_inner_m) / (plate_.ring_outer_m - plate_.ring_inner_m);
     const auto ring = static_cast<std::size_t>(std::clamp(part * kRings, 0.0, kRings - 1.0));
@@ -75,51 +80,6 @@ class CellGrid {
   double beta_rad_;
   Cells cells_{};
 };
-
-// The lidar's centre, seen from above, when it measured a point on the side of the plate: it
-// stands across from the beam by the lever arm's x, and along it by its y.
-std::optional<Eigen::Vector3d> lidar_centre(const CloudPoint& point,
-                                            const Eigen::Vector3d& lever_arm_m) {
-  const double radius_m =
-      std::hypot(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
-  if (radius_m <= std::abs(lever_arm_m.x())) return std::nullopt;
-  const double along_m = -std::sqrt(radius_m * radius_m - lever_arm_m.x() * lever_arm_m.x());
-  const double turned_rad =
-      std::atan2(static_cast<double>(point.y_m), static_cast<double>(point.x_m)) -
-      std::atan2(along_m, lever_arm_m.x());
-  return Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * lever_arm_m;
-}
-
-// A quick way out for most beams: those too level to come down inside the ring, wherever the
-// lidar's centre was on its circle.
-bool passes_over(const CloudPoint& point, const PlateGeometry& plate,
-                 const Eigen::Vector3d& lever_arm_m) {
-  const double reach_m = lever_arm_m.head<2>().norm();
-  const double level_m =
-      std::sqrt(static_cast<double>(point.x_m) * static_cast<double>(point.x_m) +
-                static_cast<double>(point.y_m) * static_cast<double>(point.y_m)) -
-      reach_m;
-  const double down_m = lever_arm_m.z() - static_cast<double>(point.z_m);
-  return level_m * plate.depth_m > (plate.ring_outer_m + reach_m) * down_m;
-}
-
-std::optional<PlateBeam> beam_at_plate(const CloudPoint& point, const PlateGeometry& plate,
-                                       const Eigen::Vector3d& lever_arm_m) {
-  if (!point.valid() || point.x_m <= 0.0F || point.z_m >= 0.0F) return std::nullopt;
-  if (passes_over(point, plate, lever_arm_m)) return std::nullopt;
-  const auto centre = lidar_centre(point, lever_arm_m);
-  if (!centre) return std::nullopt;
-  const Eigen::Vector3d along =
-      Eigen::Vector3f(point.x_m, point.y_m, point.z_m).cast<double>() - *centre;
-  if (along.z() >= -0.2 * along.norm()) return std::nullopt;
-  const Eigen::Vector3d met = *centre + along * (-plate.depth_m / along.z());
-  const double radius_m = std::hypot(met.x(), met.y());
-  if (met.x() <= 0.0 || radius_m < plate.ring_inner_m || radius_m > plate.ring_outer_m) {
-    return std::nullopt;
-  }
-  return PlateBeam{met.x(), met.y(), std::atan2(met.y(), met.x()), 0,
-                   in_ring(point, plate, lever_arm_m.z() - plate.depth_m)};
-}
 
 Tally on_plate(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, double beta_rad) {
   const PlateOutline outline(plate, beta_rad);
@@ -147,14 +107,14 @@ double outline_score(const PlateGeometry& plate, const std::vector<PlateBeam>& b
   return score;
 }
 
-double fit_outline(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
-                   double beta_rad) {
-  const std::size_t stride = 1 + beams.size() / kFitBeams;
+double fit_outline(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, double beta_rad,
+                   const Search& search) {
+  const std::size_t stride = 1 + beams.size() / search.most_beams;
   double best_rad = beta_rad;
   double best_score = outline_score(plate, beams, beta_rad, stride);
-  const auto steps = static_cast<int>(kSearchRad / kSearchStepRad);
+  const auto steps = static_cast<int>(std::lround(search.reach_rad / search.step_rad));
   for (int step = -steps; step <= steps; ++step) {
-    const double shifted_rad = beta_rad + step * kSearchStepRad;
+    const double shifted_rad = beta_rad + step * search.step_rad;
     const double score = outline_score(plate, beams, shifted_rad, stride);
     if (score > best_score) {
       best_score = score;
@@ -289,32 +249,6 @@ std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBe
 
 }  // namespace
 
-bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m) {
-  if (!(std::abs(static_cast<double>(point.z_m) - height_m) <= plate.ring_thickness_m / 2))
-    return false;
-  const double radius_m =
-      std::hypot(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
-  return point.x_m > 0.0F && radius_m >= plate.ring_inner_m && radius_m <= plate.ring_outer_m;
-}
-
-double plate_height_m(const PlateGeometry& plate, const RigGeometry& rig) {
-  return rig.T_axis_lidar.translation().z() - plate.depth_m;
-}
-
-std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
-                                      const RigGeometry& rig) {
-  std::vector<PlateBeam> beams;
-  for (std::size_t line = 0; line < cloud.lines; ++line) {
-    for (std::size_t beam = 0; beam < cloud.beams; ++beam) {
-      auto met = beam_at_plate(cloud.line(line)[beam], plate, rig.T_axis_lidar.translation());
-      if (!met) continue;
-      met->line = line;
-      beams.push_back(*met);
-    }
-  }
-  return beams;
-}
-
 PlateOutline::PlateOutline(const PlateGeometry& plate, double beta_rad)
     : plate_(plate), cos_beta_(std::cos(beta_rad)), sin_beta_(std::sin(beta_rad)) {}
 
@@ -330,7 +264,8 @@ double PlateOutline::inside_m(double x_m, double y_m) const {
 PlateView judge_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
                       const std::vector<PlateBeam>& beams, double beta_rad) {
   PlateView view;
-  view.outline_beta_rad = fit_outline(plate, beams, beta_rad);
+  const double near_rad = fit_outline(plate, beams, beta_rad, kCoarse);
+  view.outline_beta_rad = fit_outline(plate, beams, near_rad, kFine);
   const Tally tally = on_plate(plate, beams, view.outline_beta_rad);
   view.occupancy = tally.share();
   const auto say = [&view](AttitudeVerdict verdict, const std::string& reason) {

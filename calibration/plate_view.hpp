@@ -1,7 +1,4 @@
-// The beams that meet the plate's plane near the plate, and whether what they saw is the plate.
-//
-// A range is noisy, a direction is not: following each beam from the lidar's centre to the plate's
-// plane gives where it would meet the plate, whatever it did meet. So the outline is sharp.
+// Whether what stands in the ring is the plate, whole and alone. docs/geometry.md (6).
 #pragma once
 
 #include <string>
@@ -9,22 +6,10 @@
 
 #include "calibration/attitude.hpp"
 #include "calibration/organised_cloud.hpp"
+#include "calibration/plate_beams.hpp"
 #include "calibration/rig.hpp"
 
 namespace swivel {
-
-// A beam that meets the plate's plane inside the half ring.
-struct PlateBeam {
-  double x_m = 0.0;  // where it meets the plane, in O'
-  double y_m = 0.0;
-  double azimuth_rad = 0.0;
-  std::size_t line = 0;
-  bool in_ring = false;  // the point that it measured lies in the ring
-};
-
-// docs/geometry.md (6).
-std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
-                                      const RigGeometry& rig);
 
 // The triangle that a plate at azimuth beta covers, seen from above.
 class PlateOutline {
@@ -39,12 +24,6 @@ class PlateOutline {
   double cos_beta_;
   double sin_beta_;
 };
-
-// Yuan's cut: the half ring on X' > 0 about the plate's plane.
-bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m);
-
-// The height of the plate's plane in O'.
-double plate_height_m(const PlateGeometry& plate, const RigGeometry& rig);
 
 struct PlateView {
   AttitudeVerdict verdict = AttitudeVerdict::kNoPlate;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "calibration/units.hpp"
 
@@ -21,6 +22,23 @@ struct RigGeometry {
   double bias_rad = 0.0;
 };
 
+// A value that is known this well: one standard deviation.
+struct Known {
+  double value = 0.0;
+  double sigma = 0.0;
+};
+
+// What no drawing says of a plate, or says inexactly: how it stands, and how its edges look to a
+// spot of light that is no point. The sigmas here are those of a plate that was never measured.
+struct PlateShape {
+  Known height_m{0.0, 0.0015};               // above the drawn depth
+  Known roll_rad{0.0, rad_from_deg(2.0)};    // lifts its left side, seen from the axis
+  Known pitch_rad{0.0, rad_from_deg(1.0)};   // lifts its tip
+  Known growth_m{0.001, 0.002};              // of every edge, times what the slant adds
+  Known log_softness{std::log(0.002), 0.7};  // of an edge in metres, one sd of its probit
+  Known range_offset_m{0.0, 0.010};          // of ranges as short as these
+};
+
 // The triangular plate of Yuan 2021: an isosceles right triangle in a plane normal to the
 // axis, its base edge nearest to the axis, its middle line pointing at azimuth alpha in O.
 struct PlateGeometry {
@@ -28,6 +46,7 @@ struct PlateGeometry {
   double hypotenuse_m = 0.112;            // the base edge's length
   double depth_m = 0.060935;              // of the plate below the lidar's centre, along the axis
   double alpha_rad = rad_from_deg(30.0);  // as drawn; a calibration replaces it
+  PlateShape shape;                       // likewise
 
   // The ring in which the plate's points are looked for (Yuan 2021, section 4.1).
   double ring_inner_m = 0.0625;

@@ -65,7 +65,7 @@ Corrector::Corrector(const RigFile& rig) : rig_(rig) {
   estimator_ = attitude_estimator(rig.estimator, rig.geometry);
   if (!estimator_) {
     throw ConfigurationError(rig.path + ": there is no estimator '" + rig.estimator +
-                             "'; there is: ring_mean");
+                             "'; there are: plate_outline, ring_mean");
   }
   alpha_deg_ = deg_from_rad(rig.plate->alpha_rad);
 }

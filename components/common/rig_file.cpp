@@ -120,7 +120,7 @@ RigFile load_rig_file(const std::string& path) {
     rig.timing =
         file.one_of("timing", {"per_beam", "eq7"}) == "eq7" ? Timing::kEq7 : Timing::kPerBeam;
   }
-  rig.estimator = file.text("estimator", "ring_mean");
+  rig.estimator = file.text("estimator", "plate_outline");
   rig.modes = read_modes(file.section("modes"));
   file.finish();
   return rig;

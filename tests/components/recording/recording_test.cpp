@@ -59,13 +59,12 @@ double angle_at(const std::vector<msg::AxisSample>& axis, double time_ns) {
     return axis[sample - 1].angle_deg() +
            part * (axis[sample].angle_deg() - axis[sample - 1].angle_deg());
   }
-  return NAN;
+  return std::nan("");
 }
 
 double last_beam_ns(const msg::ScanLine& line) {
   return static_cast<double>(line.beam0_time_ns()) +
-         static_cast<double>(line.ranges_mm().size() - 1) *
-             static_cast<double>(line.beam_period_ns());
+         static_cast<double>(line.ranges_mm().size() - 1) * line.beam_period_ns();
 }
 
 std::vector<const msg::ScanLine*> lines_in_window(const Played& played, const msg::Sweep& sweep) {
