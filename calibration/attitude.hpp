@@ -9,6 +9,7 @@
 #include <string>
 
 #include "calibration/organised_cloud.hpp"
+#include "calibration/plate_fit.hpp"
 #include "calibration/rig.hpp"
 
 namespace swivel {
@@ -27,7 +28,7 @@ struct AttitudeEstimate {
   std::size_t points_used = 0;
   std::size_t edges_used = 0;  // beams, or pairs of them, that see an edge of the plate
   double residual_m = std::numeric_limits<double>::quiet_NaN();  // rms distance from the plate
-  std::optional<PlateShape> shape;  // as this sweep shows it, by an estimator that looks at it
+  std::optional<PlateFit> fit;  // of an estimator that makes one: what a calibration learns from
 };
 
 // Takes the raw cloud in O', its Z the axis of rotation, the height 0 at the axis frame's origin.

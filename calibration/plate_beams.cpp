@@ -110,9 +110,11 @@ Columns columns_at_plate(const OrganisedCloud& cloud, const BeamTracer& tracer) 
 bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m) {
   if (!(std::abs(static_cast<double>(point.z_m) - height_m) <= plate.ring_thickness_m / 2))
     return false;
-  const double radius_m =
-      std::hypot(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
-  return point.x_m > 0.0F && radius_m >= plate.ring_inner_m && radius_m <= plate.ring_outer_m;
+  const double x_m = point.x_m;
+  const double y_m = point.y_m;
+  const double square = x_m * x_m + y_m * y_m;
+  return x_m > 0.0 && square >= plate.ring_inner_m * plate.ring_inner_m &&
+         square <= plate.ring_outer_m * plate.ring_outer_m;
 }
 
 double plate_height_m(const PlateGeometry& plate, const RigGeometry& rig) {
@@ -134,6 +136,14 @@ std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGe
     }
   }
   return beams;
+}
+
+std::vector<PlateBeam> some_of(const std::vector<PlateBeam>& beams, std::size_t most) {
+  const std::size_t stride = 1 + beams.size() / most;
+  std::vector<PlateBeam> some;
+  some.reserve(beams.size() / stride + 1);
+  for (std::size_t i = 0; i < beams.size(); i += stride) some.push_back(beams[i]);
+  return some;
 }
 
 }  // namespace swivel

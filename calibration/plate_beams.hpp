@@ -28,6 +28,9 @@ struct PlateBeam {
 std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
                                       const RigGeometry& rig);
 
+// Every so many of them, so that there are no more than `most`.
+std::vector<PlateBeam> some_of(const std::vector<PlateBeam>& beams, std::size_t most);
+
 // Yuan's cut: the half ring on X' > 0 about the plate's plane.
 bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m);
 

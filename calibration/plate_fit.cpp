@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "calibration/plate_evidence.hpp"
@@ -15,9 +16,9 @@ using Information = Eigen::Matrix<double, kPlateParameters, kPlateParameters>;
 using KnownBefore = std::array<Known, kPlateParameters>;
 
 constexpr double kFlip = 0.01;             // of beams that say the wrong thing, whatever they saw
+constexpr double kFar = 5.0;               // softnesses from the edge
 constexpr double kLargestTurn_rad = 0.02;  // in one step
 constexpr double kLargestSoftening = 1.0;  // likewise, of the logarithm
-constexpr double kConverged = 0.001;       // square of a step, in sigmas
 constexpr double kSharpest_m = 0.00003;    // softness: finer than the beams lie
 constexpr double kSoftStart_m = 0.002;     // so that a first azimuth beside the edge finds it
 
@@ -30,9 +31,10 @@ constexpr Known kNearGrowth_m{0.0, 0.002};
 struct Round {
   std::size_t most_beams;
   double least_zone_m;  // beams further from the outline know nothing of it
-  int most_iterations;
+  double converged;     // square of a step, in sigmas
 };
-constexpr std::array<Round, 2> kRounds{Round{6000, 0.014, 10}, Round{100'000, 0.0025, 15}};
+constexpr std::array<Round, 2> kRounds{Round{4000, 0.014, 0.3}, Round{100'000, 0.0025, 0.01}};
+constexpr int kMostIterations = 20;
 
 double normal_cdf(double x) {
   return 0.5 * std::erfc(-x * std::sqrt(0.5));
@@ -46,24 +48,24 @@ struct Normal {
   Information information = Information::Zero();
   PlateParameters gradient = PlateParameters::Zero();
   double misfit = 0.0;  // sum of squared residuals, by their variance
+  double beams = 0.0;   // trusted ones
 };
-
-std::vector<PlateBeam> some_of(const std::vector<PlateBeam>& beams, std::size_t most) {
-  const std::size_t stride = 1 + beams.size() / most;
-  std::vector<PlateBeam> some;
-  some.reserve(beams.size() / stride + 1);
-  for (std::size_t i = 0; i < beams.size(); i += stride) some.push_back(beams[i]);
-  return some;
-}
 
 // Eqs. (15) and (16): the gradient of the log-likelihood of one beam, and Fisher's information.
 void add_beam(const EdgeBeam& edge, const PlateTriangle& triangle, const PlateFrame& frame,
               const PlateParameters& parameters, Normal& normal) {
   const PlateMeeting at = frame.meeting(edge.beam);
+  const double trust = edge.near ? kNearTrust : 1.0;
+  normal.beams += trust;
   const PlateParameter growth = edge.near ? kGrowthNear : kGrowth;
   const auto [inside_m, by_height, slant] = depth_of(edge, at, triangle, parameters);
   const double softness_m = std::exp(parameters[kLogSoftness]) * slant;
   const double x = inside_m / softness_m;
+  if (std::abs(x) > kFar) {  // sure of its side: it moves nothing, but may be wrong
+    const double wrong = (x > 0.0 ? 1.0 : edge.odds) / (1.0 + edge.odds);
+    normal.misfit += trust * wrong * wrong / (kFlip * (1.0 - kFlip));
+    return;
+  }
   const double chance = kFlip + (1.0 - 2.0 * kFlip) * normal_cdf(x);
   const double steepness = (1.0 - 2.0 * kFlip) * normal_density(x);
   const double variance = chance * (1.0 - chance);
@@ -77,11 +79,10 @@ void add_beam(const EdgeBeam& edge, const PlateTriangle& triangle, const PlateFr
   by[growth] = slant;
   by[kLogSoftness] = -x * softness_m;
   by *= steepness / softness_m;
-  const double trust = edge.near ? kNearTrust : 1.0;
   const double known = edge.sureness * edge.sureness;
-  normal.information += (trust * known / variance) * by * by.transpose();
+  normal.information.selfadjointView<Eigen::Lower>().rankUpdate(by, trust * known / variance);
   normal.gradient += (trust * (hit - chance) / variance) * by;
-  normal.misfit += (hit - chance) * (hit - chance) / variance;
+  normal.misfit += trust * (hit - chance) * (hit - chance) / variance;
 }
 
 KnownBefore known_before(const PlateShape& shape, double beta_rad) {
@@ -101,6 +102,7 @@ Normal normal_equations(const std::vector<EdgeBeam>& beams, const PlateTriangle&
   const PlateFrame frame(parameters, triangle.middle_m());
   Normal normal;
   for (const EdgeBeam& beam : beams) add_beam(beam, triangle, frame, parameters, normal);
+  normal.information = normal.information.selfadjointView<Eigen::Lower>();
   for (std::size_t i = 0; i < before.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double precision = 1.0 / (before[i].sigma * before[i].sigma);
@@ -110,22 +112,28 @@ Normal normal_equations(const std::vector<EdgeBeam>& beams, const PlateTriangle&
   return normal;
 }
 
-// Fisher scoring. Returns the covariance; none if it does not come to rest.
+// Fisher scoring; shorter steps where it goes to and fro. Returns the covariance; none if it does
+// not come to rest.
 std::optional<Information> climb(const std::vector<EdgeBeam>& beams, const PlateTriangle& triangle,
-                                 const KnownBefore& before, int most_iterations,
+                                 const KnownBefore& before, double converged,
                                  PlateParameters& parameters, double& misfit) {
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  double last = std::numeric_limits<double>::infinity();
+  double part = 1.0;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const Normal normal = normal_equations(beams, triangle, before, parameters);
     const Information covariance = normal.information.inverse();
     PlateParameters step = covariance * normal.gradient;
-    misfit = normal.misfit / static_cast<double>(std::max<std::size_t>(beams.size(), 1));
-    if (!step.allFinite()) return std::nullopt;
+    misfit = normal.misfit / std::max(normal.beams, 1.0);
+    const double square = step.dot(normal.gradient);
+    if (!std::isfinite(square)) return std::nullopt;
+    if (square > last) part *= 0.5;
+    last = square;
     step[kBeta] = std::clamp(step[kBeta], -kLargestTurn_rad, kLargestTurn_rad);
     step[kLogSoftness] = std::clamp(step[kLogSoftness], -kLargestSoftening, kLargestSoftening);
     step[kLogSoftness] =
         std::max(step[kLogSoftness], std::log(kSharpest_m) - parameters[kLogSoftness]);
-    parameters += step;
-    if (step.dot(normal.information * step) < kConverged) return covariance;
+    parameters += part * step;
+    if (step.dot(normal.information * step) < converged) return covariance;
   }
   return std::nullopt;
 }
@@ -160,12 +168,14 @@ std::optional<PlateFit> fit_plate(const std::vector<PlateBeam>& beams, const Pla
     ranges = ranges_on_plate(some, triangle, PlateFrame(parameters, triangle.middle_m()));
     const auto chosen = edge_beams(some, triangle, parameters, ranges.offset_m, round.least_zone_m);
     fit.edge_beams = chosen.size();
-    covariance = climb(chosen, triangle, before, round.most_iterations, parameters, fit.misfit);
+    covariance = climb(chosen, triangle, before, round.converged, parameters, fit.misfit);
   }
   if (!covariance) return std::nullopt;
   fit.beta_rad = parameters[kBeta];
   fit.beta_sigma_rad = std::sqrt((*covariance)(kBeta, kBeta));
   fit.shape = shape_of(parameters, *covariance, ranges);
+  fit.shape_information = covariance->block<5, 5>(kHeight, kHeight).inverse();
+  fit.beta_by_shape = fit.shape_information * covariance->block<5, 1>(kHeight, kBeta);
   fit.residual_m = ranges.rms_m;
   fit.hits = ranges.hits;
   return fit;

@@ -13,7 +13,7 @@ constexpr std::size_t kLeastBeamsInRing = 50;
 constexpr std::size_t kLeastEdgeBeams = 40;
 constexpr double kWidestSigma_rad = rad_from_deg(1.0);
 constexpr double kAllowedCorrection_rad = rad_from_deg(4.0);  // of the first, coarse outline
-constexpr double kWorstMisfit = 1.5;  // 0.05 to 0.6 with a plate; 1 if every edge beam were chance
+constexpr double kWorstMisfit = 5.0;  // with a plate 0.05 to 1.6; 100 where every edge is elsewhere
 
 // Where the beams that measured in the ring are, on the mean.
 struct InRing {
@@ -83,7 +83,7 @@ AttitudeEstimate estimate_by_plate_outline(const OrganisedCloud& cloud, const Pl
   estimate.points_used = fit->hits;
   estimate.edges_used = fit->edge_beams;
   estimate.residual_m = fit->residual_m;
-  estimate.shape = fit->shape;
+  estimate.fit = fit;
   return estimate;
 }
 
