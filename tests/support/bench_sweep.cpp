@@ -47,13 +47,20 @@ const char* name_of(Tier tier) {
 BenchSweepOptions at_tier(Tier tier, BenchSweepOptions options) {
   sim::LidarOptions& lidar = options.lidar;
   lidar.noise_mm = 13.0;
-  lidar.dropout_rate = tier == Tier::kReal ? 0.005 : 0.0;
-  if (tier != Tier::kClean) lidar.spot_radius_mm = 4.0;
-  if (tier != Tier::kRough) return options;
+  lidar.dropout_rate = 0.0;
+  lidar.spot_radius_mm = 0.0;
+  if (tier == Tier::kClean) return options;
+  lidar.dropout_rate = 0.005;
+  lidar.spot_radius_mm = 4.0;
+  lidar.divergence_mrad = 6.0;
+  lidar.echo_jitter = 0.2;
+  lidar.mixed_pixel_rate = 0.0;  // only surfaces that are near to one another blend
+  if (tier == Tier::kReal) return options;
   lidar.noise_mm = 20.0;
   lidar.dropout_rate = 0.02;
   lidar.range_bias_mm = 3.0;
   lidar.spot_radius_mm = 8.0;
+  lidar.mixed_pixel_rate = 0.3;
   options.world.plate.pitch_deg = 1.5;
   options.world.plate.roll_deg = -1.0;
   options.world.plate.depth_mm += 1.0;
