@@ -180,8 +180,8 @@ double plate_width_deg(const LidarOptions& lidar, double hypotenuse_mm) {
 // energies 0.7 / (1 + 106.2 / 300) and 0.3 / (1 + 1656 / 300) when whole: for half of the energy
 // 8.2 % of the spot on the plate is enough. The spot is an ellipse, 4.05 mm across the fan and
 // 4.05 / cos 55 along it; the legs' normals stand 30.4 and 12.2 deg to the fan where the beam
-// begins and ends to see them, which is 1.59 and 1.72 radii. A plate with its legs that much further out, seen by
-// a pencil, looks as large.
+// begins and ends to see them, which is 1.59 and 1.72 radii. A plate with its legs that much
+// further out, seen by a pencil, looks as large.
 TEST(Spot, APlateLooksLargerByTheGrowth) {
   LidarOptions lidar = wide_beam();
   lidar.divergence_mrad = 6.0;
