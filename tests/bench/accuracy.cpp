@@ -1,6 +1,7 @@
 #include "tests/bench/accuracy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <ctime>
@@ -10,8 +11,6 @@
 
 namespace swivel {
 namespace {
-
-constexpr int kTimedEstimates = 7;
 
 BenchSweepOptions sweep_of(const TrialPlan& plan, int sweep) {
   const auto run = plan.seed * 100 + static_cast<std::uint64_t>(plan.mode);
@@ -93,9 +92,9 @@ std::vector<double> median_times_ms(const TrialPlan& plan,
   const BenchSweep sweep = make_bench_sweep(sweep_of(plan, 0));
   std::vector<double> medians_ms;
   for (const NamedEstimator& estimator : estimators) {
-    std::vector<double> times_ms;
-    for (int i = 0; i < kTimedEstimates; ++i) times_ms.push_back(time_ms(estimator, sweep));
-    const auto middle = times_ms.begin() + kTimedEstimates / 2;
+    std::array<double, 7> times_ms{};
+    for (double& each : times_ms) each = time_ms(estimator, sweep);
+    const auto middle = times_ms.begin() + times_ms.size() / 2;
     std::nth_element(times_ms.begin(), middle, times_ms.end());
     medians_ms.push_back(*middle);
   }
