@@ -40,5 +40,19 @@ TEST(Accuracy, TrialsAreJudgedByTheTruth) {
   EXPECT_NE(trials[0][0].error_rad, trials[0][1].error_rad);
 }
 
+// What makes the benchmark quick must not change what it measures.
+TEST(Accuracy, TheLowBeamsTellAllThatTheEstimatorsNeed) {
+  BenchSweepOptions options = drawn_sweep(Tier::kReal, 3, 5);
+  const BenchSweep whole = make_bench_sweep(options);
+  options.plate_beams_only = true;
+  const BenchSweep low = make_bench_sweep(options);
+  for (const NamedEstimator& estimator : known_estimators()) {
+    const AttitudeEstimate of_whole = estimator.estimate(whole.cloud, PlateGeometry());
+    const AttitudeEstimate of_low = estimator.estimate(low.cloud, PlateGeometry());
+    ASSERT_EQ(of_whole.verdict, AttitudeVerdict::kGood) << of_whole.reason;
+    EXPECT_NEAR(of_low.beta_rad, of_whole.beta_rad, 0.1 * of_whole.beta_sigma_rad);
+  }
+}
+
 }  // namespace
 }  // namespace swivel
