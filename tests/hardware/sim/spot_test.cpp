@@ -54,13 +54,14 @@ double power_beyond(double offset_radii) {
   constexpr int kCells = 400;
   double beyond = 0.0;
   double all = 0.0;
-  for (int i = 0; i < kCells * kCells; ++i) {
-    const double x = 2.0 * (i % kCells + 0.5) / kCells - 1.0;
-    const double y = 2.0 * (i / kCells + 0.5) / kCells - 1.0;
-    if (x * x + y * y > 1.0) continue;
-    const double power = std::exp(-2.0 * (x * x + y * y));
-    all += power;
-    if (x > offset_radii) beyond += power;
+  const auto centre = [](int cell) { return 2.0 * (cell + 0.5) / kCells - 1.0; };
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const double square = centre(i) * centre(i) + centre(j) * centre(j);
+      if (square > 1.0) continue;
+      all += std::exp(-2.0 * square);
+      if (centre(i) > offset_radii) beyond += std::exp(-2.0 * square);
+    }
   }
   return beyond / all;
 }
