@@ -31,11 +31,11 @@ struct Place {
 
 Place in_o(const BenchSweep& sweep, std::size_t line, std::size_t beam, double more_rad = 0.0) {
   const CloudPoint& point = sweep.cloud.line(line)[beam];
-  const double x_m = point.x_m;
-  const double y_m = point.y_m;
+  const double x_m = static_cast<double>(point.x_m);
+  const double y_m = static_cast<double>(point.y_m);
   const double turn_rad = sweep.phi_start_rad + more_rad;
   return {std::cos(turn_rad) * x_m - std::sin(turn_rad) * y_m,
-          std::sin(turn_rad) * x_m + std::cos(turn_rad) * y_m, point.z_m};
+          std::sin(turn_rad) * x_m + std::cos(turn_rad) * y_m, static_cast<double>(point.z_m)};
 }
 
 double off_the_room_m(const Place& place) {
