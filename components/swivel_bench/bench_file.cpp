@@ -97,6 +97,11 @@ void read_lidar(YamlSection& section, sim::LidarOptions& lidar) {
   read(section, "near_bias_mm", kPlace, lidar.near_bias_mm);
   read(section, "dropout_rate", kRate, lidar.dropout_rate);
   read(section, "spot_radius_mm", kNoise, lidar.spot_radius_mm);
+  read(section, "divergence_mrad", kNoise, lidar.divergence_mrad);
+  read(section, "echo_fraction", kRate, lidar.echo_fraction);
+  read(section, "echo_jitter", kRate, lidar.echo_jitter);
+  read(section, "gain_knee_mm", kSize, lidar.gain_knee_mm);
+  read(section, "echo_merge_mm", kSize, lidar.echo_merge_mm);
   read(section, "mixed_pixel_rate", kRate, lidar.mixed_pixel_rate);
   if (lidar.last_step >= lidar.steps_per_turn) {
     section.refuse("last_step", "must be below steps_per_turn: a scan is less than a turn");

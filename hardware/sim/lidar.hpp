@@ -10,27 +10,15 @@
 #include <functional>
 #include <vector>
 
+#include "hardware/sim/lidar_options.hpp"
 #include "hardware/sim/random.hpp"
+#include "hardware/sim/spot.hpp"
 #include "hardware/sim/world.hpp"
 
 namespace swivel::sim {
 
 inline constexpr std::uint16_t kTooNear = 4;       // what the sensor says below 21 mm
 inline constexpr std::uint16_t kNoReturn = 65533;  // and beyond 30 m, or of a weak echo
-
-struct LidarOptions {
-  int last_step = 1080;
-  int front_step = 540;
-  int steps_per_turn = 1440;
-  double lever_arm_mm = 13.9;
-  double bias_deg = 0.0;  // added to every beam's angle (Zeng 2018)
-  double noise_mm = 13.0;
-  double range_bias_mm = 0.0;
-  double near_bias_mm = 0.0;      // at range 0, fading with a length of 0.3 m
-  double dropout_rate = 0.005;    // of echoes lost for no reason
-  double spot_radius_mm = 0.0;    // of the beam; 0 is a pencil
-  double mixed_pixel_rate = 0.3;  // of beams on an edge that answer something in between
-};
 
 struct LineInstant {
   std::uint64_t line_index = 0;    // chooses the noise, together with the seed
@@ -55,15 +43,11 @@ class Lidar {
   double beam_angle_rad(int step) const;  // as the sensor believes, without the bias
 
  private:
-  struct Echo {
-    double distance_m;
-    double strength;
-  };
   Ray ray(int step, double shaft_angle_rad) const;
-  std::optional<Echo> echo_of_spot(const Ray& ray, Random& random) const;
   double measured_mm(double distance_m, Random& random) const;
 
   LidarOptions options_;
+  Spot spot_;
   const World* world_;
   std::uint64_t seed_;
 };

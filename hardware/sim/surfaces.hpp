@@ -17,6 +17,7 @@ struct Hit {
   double distance_m = 0.0;
   double cos_incidence = 1.0;  // 1: the beam meets the surface squarely
   double reflectivity = 0.5;   // 0 black, 1 white
+  int surface = 0;             // which one of the world's
 };
 
 // A wall, floor or roof, seen from the side to which its normal points.

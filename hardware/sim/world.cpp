@@ -68,8 +68,10 @@ Triangle triangle_of(const PlateOptions& plate) {
   return triangle;
 }
 
-void keep_nearer(const std::optional<Hit>& hit, std::optional<Hit>& nearest) {
-  if (hit && (!nearest || hit->distance_m < nearest->distance_m)) nearest = hit;
+void keep_nearer(std::optional<Hit> hit, int surface, std::optional<Hit>& nearest) {
+  if (!hit || (nearest && nearest->distance_m <= hit->distance_m)) return;
+  hit->surface = surface;
+  nearest = hit;
 }
 
 }  // namespace
@@ -92,9 +94,10 @@ World::World(const WorldOptions& options) : walls_(walls_of(options.room)) {
 
 std::optional<Hit> World::cast(const Ray& ray) const {
   std::optional<Hit> nearest;
-  for (const Wall& wall : walls_) keep_nearer(sim::cast(ray, wall), nearest);
-  for (const Box& box : boxes_) keep_nearer(sim::cast(ray, box), nearest);
-  if (plate_) keep_nearer(sim::cast(ray, *plate_), nearest);
+  int surface = 0;
+  for (const Wall& wall : walls_) keep_nearer(sim::cast(ray, wall), ++surface, nearest);
+  for (const Box& box : boxes_) keep_nearer(sim::cast(ray, box), ++surface, nearest);
+  if (plate_) keep_nearer(sim::cast(ray, *plate_), ++surface, nearest);
   return nearest;
 }
 

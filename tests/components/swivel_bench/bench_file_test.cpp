@@ -40,6 +40,13 @@ TEST(BenchFile, ShippedFileSaysWhatTheDefaultsAre) {
   EXPECT_EQ(shipped.world.room.furniture.size(), defaults.world.room.furniture.size());
   EXPECT_EQ(shipped.lidar.noise_mm, defaults.lidar.noise_mm);
   EXPECT_EQ(shipped.lidar.dropout_rate, defaults.lidar.dropout_rate);
+  EXPECT_EQ(shipped.lidar.spot_radius_mm, defaults.lidar.spot_radius_mm);
+  EXPECT_EQ(shipped.lidar.divergence_mrad, defaults.lidar.divergence_mrad);
+  EXPECT_EQ(shipped.lidar.echo_fraction, defaults.lidar.echo_fraction);
+  EXPECT_EQ(shipped.lidar.echo_jitter, defaults.lidar.echo_jitter);
+  EXPECT_EQ(shipped.lidar.gain_knee_mm, defaults.lidar.gain_knee_mm);
+  EXPECT_EQ(shipped.lidar.echo_merge_mm, defaults.lidar.echo_merge_mm);
+  EXPECT_EQ(shipped.lidar.mixed_pixel_rate, defaults.lidar.mixed_pixel_rate);
   EXPECT_EQ(shipped.timing.scan_period_ms, defaults.timing.scan_period_ms);
   EXPECT_EQ(shipped.timing.start_latency_ms, defaults.timing.start_latency_ms);
   EXPECT_EQ(shipped.motor.home_angle_deg, defaults.motor.home_angle_deg);
@@ -50,7 +57,7 @@ TEST(BenchFile, ShippedFileSaysWhatTheDefaultsAre) {
 TEST(BenchFile, ReadsEverySection) {
   const sim::BenchOptions bench = load_bench_file(
       written("seed: 9\nroom: {yaw_deg: 3, furniture: {}}\nplate: {present: false}\n"
-              "ring_clutter: {present: true}\nlidar: {noise_mm: 5}\n"
+              "ring_clutter: {present: true}\nlidar: {noise_mm: 5, divergence_mrad: 6}\n"
               "timing: {stamp_origin: rear_centre}\nstepper: {lose_every: 50}\n"
               "server: {chop: true}\n"));
   EXPECT_EQ(bench.seed, 9U);
@@ -59,6 +66,7 @@ TEST(BenchFile, ReadsEverySection) {
   EXPECT_FALSE(bench.world.plate.present);
   EXPECT_TRUE(bench.world.ring_clutter.present);
   EXPECT_EQ(bench.lidar.noise_mm, 5.0);
+  EXPECT_EQ(bench.lidar.divergence_mrad, 6.0);
   EXPECT_TRUE(bench.timing.stamp_at_rear_centre);
   EXPECT_EQ(bench.motor.lose_every, 50);
   EXPECT_TRUE(bench.server.misbehaviour.chop);

@@ -1,0 +1,129 @@
+// ./run bench accuracy: the attitude's error in each mode and tier, beside what is to be reached.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "calibration/units.hpp"
+#include "tests/bench/accuracy.hpp"
+
+namespace swivel {
+namespace {
+
+struct Options {
+  std::vector<int> modes{1, 2, 3, 4, 5, 6, 7};
+  std::vector<Tier> tiers{Tier::kClean, Tier::kReal, Tier::kRough};
+  int sweeps = 50;
+  std::uint64_t seed = 1;
+};
+
+// What is to be reached in tier real.
+struct Aim {
+  double rms_deg;
+  double max_deg;
+};
+const std::map<int, Aim> kAims{{1, {0.09, 0.286}}, {4, {0.04, 0.12}}, {7, {0.02, 0.06}}};
+
+// A study with a simulator of its own, tier real: an oracle that knows the real plate, and the
+// paper's method with its even spread of the beams.
+constexpr std::array<double, 7> kStudyBound_deg{0.070, 0.043, 0.030, 0.027, 0.018, 0.015, 0.010};
+constexpr std::array<double, 7> kStudyRing_deg{0.474, 0.325, 0.266, 0.208, 0.178, 0.172, 0.133};
+
+constexpr double kMapDistance_mm = 10'000.0;
+constexpr double kMapAim_mm = 50.0;
+
+const char* in_words(Tier tier) {
+  switch (tier) {
+    case Tier::kClean:
+      return "range noise 13 mm, a pencil beam";
+    case Tier::kReal:
+      return "13 mm, 4 mm spot of 6 mrad, echo jitter, mixed pixels, 0.5 % dropouts";
+    case Tier::kRough:
+      return "20 mm, 8 mm spot, 2 % dropouts, range bias 3 mm, plate tilted 1.5/-1.0 deg and 1 mm "
+             "low";
+  }
+  return "";
+}
+
+void print_head(Tier tier) {
+  std::printf("\nTier %s: %s\n", name_of(tier), in_words(tier));
+  std::printf("%4s %-14s %7s %7s %7s %7s %7s %8s %10s", "mode", "estimator", "rms", "max", "mean",
+              "/sigma", "refused", "ms", "10 m, mm");
+  std::printf(tier == Tier::kReal ? "  study: bound, ring    aim\n" : "\n");
+}
+
+const char* pass_or_miss(bool reached) {
+  return reached ? "pass" : "miss";
+}
+
+void print_aim(const AccuracySummary& summary, int mode) {
+  const auto index = static_cast<std::size_t>(mode) - 1;
+  std::printf("  %12.3f %6.3f", kStudyBound_deg[index], kStudyRing_deg[index]);
+  const auto aim = kAims.find(mode);
+  if (aim == kAims.end()) return;
+  const auto& [rms_deg, max_deg] = aim->second;
+  std::printf("    rms %.2f %s, max %.3f %s", rms_deg,
+              pass_or_miss(summary.good > 0 && summary.rms_deg <= rms_deg), max_deg,
+              pass_or_miss(summary.good > 0 && summary.max_deg <= max_deg));
+}
+
+void print_row(const TrialPlan& plan, const std::string& name, const AccuracySummary& summary,
+               double time_ms) {
+  std::printf("%4d %-14s ", plan.mode, name.c_str());
+  if (summary.good == 0) {
+    std::printf("%7s %7s %7s %7s %7zu %8.2f %15s", "-", "-", "-", "-", summary.refused, time_ms,
+                "");
+  } else {
+    const double map_mm = kMapDistance_mm * std::tan(rad_from_deg(summary.max_deg));
+    std::printf("%7.4f %7.4f %7.4f %7.2f %7zu %8.2f %10.1f %s", summary.rms_deg, summary.max_deg,
+                summary.mean_deg, summary.rms_in_sigmas, summary.refused, time_ms, map_mm,
+                pass_or_miss(map_mm <= kMapAim_mm));
+  }
+  if (plan.tier == Tier::kReal) print_aim(summary, plan.mode);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void measure(const Options& options) {
+  const auto estimators = known_estimators();
+  std::printf(
+      "Error of beta, deg, over %d sweeps a row: phi_start drawn within 3 deg, alpha within"
+      " 1 deg of 30.\n",
+      options.sweeps);
+  std::printf(
+      "/sigma: rms of error by its own sigma. 10 m: map error there, distance * tan(max),"
+      " aim 50 mm.\nms: of the processor, the median of one estimate of all beams.\n");
+  for (const Tier tier : options.tiers) {
+    print_head(tier);
+    for (const int mode : options.modes) {
+      const TrialPlan plan{tier, mode, options.sweeps, options.seed};
+      const auto trials = run_trials(plan, estimators);
+      const auto times_ms = median_times_ms(plan, estimators);
+      for (std::size_t i = 0; i < estimators.size(); ++i) {
+        print_row(plan, estimators[i].name, summarise(trials[i]), times_ms[i]);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace swivel
+
+int main(int argc, char** argv) {
+  using swivel::Tier;
+  swivel::Options options;
+  CLI::App app{"The attitude's error on the bench's world, by mode and tier of realism."};
+  const std::map<std::string, Tier> tiers{
+      {"clean", Tier::kClean}, {"real", Tier::kReal}, {"rough", Tier::kRough}};
+  app.add_option("--modes", options.modes, "Which of 1 to 7")->check(CLI::Range(1, 7));
+  app.add_option("--tiers", options.tiers, "Which of clean, real, rough")
+      ->transform(CLI::CheckedTransformer(tiers));
+  app.add_option("--sweeps", options.sweeps, "A mode and tier")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Of all random numbers")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  swivel::measure(options);
+  return 0;
+}
