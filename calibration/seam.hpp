@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calibration/organised_cloud.hpp"
+#include "calibration/units.hpp"
 
 namespace swivel {
 
@@ -21,5 +22,14 @@ struct SeamEstimate {
 
 // Takes the raw cloud in O', its Z the axis of rotation, of a sweep of about half a turn.
 SeamEstimate measure_seam(const OrganisedCloud& cloud);
+
+// When the two halves disagree by more than chance, and by enough to matter.
+struct SeamAlarm {
+  double least_rad = rad_from_deg(0.5);
+  double least_sigmas = 5.0;
+};
+
+// False where the seam is not known: nothing is said then.
+bool seam_is_open(const SeamEstimate& seam, const SeamAlarm& alarm = {});
 
 }  // namespace swivel
