@@ -100,9 +100,13 @@ struct Moments {
   }
 };
 
+// Told by where the point's ray meets its own plane: by the noisy point itself, more of the noise
+// towards the other plane than away from it would go, and turn the fit.
 bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen::Vector3f& point) {
+  const double along_ray = -planes[own].distance_m / planes[own].normal.dot(point.cast<double>());
+  const Eigen::Vector3f foot = static_cast<float>(along_ray) * point;
   for (std::size_t other = 0; other < planes.size(); ++other) {
-    if (other != own && std::abs(height_over(planes[other], point)) < kSharedStripM) return true;
+    if (other != own && std::abs(height_over(planes[other], foot)) < kSharedStripM) return true;
   }
   return false;
 }
@@ -163,6 +167,32 @@ std::vector<Plane> find_roughly(const Points& points, std::size_t count,
   return planes;
 }
 
+// From the value that 2 % lie below to that which 2 % lie above.
+double reach(std::vector<float>& values) {
+  const auto at = [&values](double share) {
+    const auto place = values.begin() +
+                       static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    return static_cast<double>(*place);
+  };
+  if (values.empty()) return 0.0;
+  return at(0.98) - at(0.02);
+}
+
+void measure_extent(const Points& points, double band_m, Plane& wall) {
+  const Eigen::Vector3f level =
+      Eigen::Vector3d::UnitZ().cross(wall.normal).normalized().cast<float>();
+  std::vector<float> along;
+  std::vector<float> up;
+  for (const Eigen::Vector3f& point : points) {
+    if (std::abs(height_over(wall, point)) > band_m) continue;
+    along.push_back(level.dot(point));
+    up.push_back(point.z());
+  }
+  wall.length_m = reach(along);
+  wall.height_m = reach(up);
+}
+
 }  // namespace
 
 std::vector<Plane> find_planes(const OrganisedCloud& cloud, std::size_t count,
@@ -188,6 +218,8 @@ std::vector<Plane> find_walls(const OrganisedCloud& cloud, std::size_t count,
   };
   walls.erase(std::remove_if(walls.begin(), walls.end(), leans), walls.end());
   if (walls.size() > count) walls.resize(count);
+  const Points points = valid_points(cloud);
+  for (Plane& wall : walls) measure_extent(points, kKeptSigmas * wall.rms_m, wall);
   return walls;
 }
 
