@@ -22,6 +22,7 @@ struct AlphaSweep {
   double beta_rad = 0.0;
   double beta_sigma_rad = 0.0;
   std::vector<Plane> walls;  // and whatever else stands upright
+  std::string name;          // as the user knows it; empty: its place, from 1
 };
 
 struct AlphaOptions {
@@ -38,6 +39,7 @@ struct AlphaOptions {
 
 enum class Wall { kFront, kLeft, kBack, kRight };  // at azimuth 0, 90, 180, 270 deg in O
 inline constexpr std::size_t kWalls = 4;
+inline constexpr std::array<const char*, kWalls> kWallNames = {"front", "left", "back", "right"};
 
 struct AlphaFit {
   double alpha_rad = std::numeric_limits<double>::quiet_NaN();

@@ -17,7 +17,7 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
-constexpr int kRansacRounds = 400;
+constexpr int kRansacRounds = 4000;
 constexpr int kRefinements = 4;
 constexpr double kKeptSigmas = 3.0;    // of the points that a plane is fitted to
 constexpr double kSharedStripM = 0.1;  // about another plane, where points could be either's
@@ -131,6 +131,8 @@ std::optional<Plane> fit(const Moments& moments) {
   plane.points = moments.count;
   const Eigen::Vector3d level = Eigen::Vector3d::UnitZ().cross(plane.normal);
   const double spread_m2 = level.dot(moments.scatter() * level) / level.squaredNorm();
+  plane.length_m = std::sqrt(12.0 * std::max(spread_m2, 0.0));
+  plane.height_m = std::sqrt(12.0 * std::max(moments.scatter()(2, 2), 0.0));
   plane.azimuth_sigma_rad =
       plane.rms_m / std::sqrt(static_cast<double>(plane.points) * std::max(spread_m2, 1e-12));
   return plane;
@@ -167,32 +169,6 @@ std::vector<Plane> find_roughly(const Points& points, std::size_t count,
   return planes;
 }
 
-// From the value that 2 % lie below to that which 2 % lie above.
-double reach(std::vector<float>& values) {
-  const auto at = [&values](double share) {
-    const auto place = values.begin() +
-                       static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    return static_cast<double>(*place);
-  };
-  if (values.empty()) return 0.0;
-  return at(0.98) - at(0.02);
-}
-
-void measure_extent(const Points& points, double band_m, Plane& wall) {
-  const Eigen::Vector3f level =
-      Eigen::Vector3d::UnitZ().cross(wall.normal).normalized().cast<float>();
-  std::vector<float> along;
-  std::vector<float> up;
-  for (const Eigen::Vector3f& point : points) {
-    if (std::abs(height_over(wall, point)) > band_m) continue;
-    along.push_back(level.dot(point));
-    up.push_back(point.z());
-  }
-  wall.length_m = reach(along);
-  wall.height_m = reach(up);
-}
-
 }  // namespace
 
 std::vector<Plane> find_planes(const OrganisedCloud& cloud, std::size_t count,
@@ -218,8 +194,6 @@ std::vector<Plane> find_walls(const OrganisedCloud& cloud, std::size_t count,
   };
   walls.erase(std::remove_if(walls.begin(), walls.end(), leans), walls.end());
   if (walls.size() > count) walls.resize(count);
-  const Points points = valid_points(cloud);
-  for (Plane& wall : walls) measure_extent(points, kKeptSigmas * wall.rms_m, wall);
   return walls;
 }
 

@@ -9,8 +9,6 @@
 
 namespace swivel {
 
-inline constexpr std::array<const char*, kWalls> kWallNames = {"front", "left", "back", "right"};
-
 // One wall and what the sweeps saw of it.
 struct RoomWall {
   std::size_t side = 0;                // as in Wall
