@@ -17,7 +17,9 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
-constexpr int kRansacRounds = 4000;
+constexpr int kMostRansacRounds = 4000;
+constexpr std::size_t kRansacEffort = 8'000'000;  // points looked at for one plane: the fewer are
+                                                  // left, the more rounds, and the small are found
 constexpr int kRefinements = 4;
 constexpr double kKeptSigmas = 3.0;    // of the points that a plane is fitted to
 constexpr double kSharedStripM = 0.1;  // about another plane, where points could be either's
@@ -62,7 +64,8 @@ Plane facing_origin(const Eigen::Vector3d& normal, double offset_m) {
 std::optional<Plane> segment(const PclCloud::Ptr& cloud, double band_m) {
   const auto model = pcl::make_shared<pcl::SampleConsensusModelPlane<pcl::PointXYZ>>(cloud);
   pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(model, band_m);
-  consensus.setMaxIterations(kRansacRounds);
+  const auto rounds = static_cast<int>(kRansacEffort / cloud->size());
+  consensus.setMaxIterations(std::min(rounds, kMostRansacRounds));
   if (!consensus.computeModel()) return std::nullopt;
   Eigen::VectorXf found;
   pcl::Indices inliers;
