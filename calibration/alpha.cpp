@@ -6,169 +6,63 @@
 #include <cmath>
 
 #include "calibration/in_words.hpp"
+#include "calibration/wall_angles.hpp"
 
 namespace swivel {
 namespace {
 
-constexpr std::array<const char*, kWalls> kWallNames = {"front", "left", "back", "right"};
-
-// The four walls of one sweep, by Wall; null where there is none.
-using FourWalls = std::array<const Plane*, kWalls>;
-
-double turned(double angle_rad) {
-  return std::remainder(angle_rad, 2 * kPi);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
-}
-
-// The direction in O in which a wall's normal, which looks at the rig, should point.
-double expected_azimuth_rad(std::size_t wall, const AlphaOptions& options) {
-  return options.room_yaw_rad + static_cast<double>(wall) * kPi / 2 + kPi;
-}
-
-// Eq. (9): how far a wall of O' is off its place in O when the plate stands at alpha.
-double wall_error_rad(const Plane& plane, std::size_t wall, double beta_rad, double alpha_rad,
-                      const AlphaOptions& options) {
-  return turned(plane.azimuth_rad() + alpha_rad - beta_rad - expected_azimuth_rad(wall, options));
-}
-
-// The largest wall of each side.
-FourWalls sort_walls(const AlphaSweep& sweep, const AlphaOptions& options) {
-  FourWalls sides{};
-  for (const Plane& plane : sweep.walls) {
-    for (std::size_t wall = 0; wall < kWalls; ++wall) {
-      const double error_rad =
-          wall_error_rad(plane, wall, sweep.beta_rad, options.initial_alpha_rad, options);
-      if (std::abs(error_rad) > options.widest_skew_rad) continue;
-      if (sides[wall] == nullptr || plane.points > sides[wall]->points) sides[wall] = &plane;
-    }
-  }
-  return sides;
-}
-
-std::string missing_sides(const FourWalls& sides) {
-  std::string names;
-  for (std::size_t wall = 0; wall < kWalls; ++wall) {
-    if (sides[wall] != nullptr) continue;
-    names += names.empty() ? "" : ", ";
-    names += kWallNames[wall];
-  }
-  return names;
-}
-
-std::string why_walls_are_missing(std::size_t number, const AlphaSweep& sweep,
-                                  const FourWalls& sides, const AlphaOptions& options) {
-  const auto found = static_cast<std::size_t>(
-      std::count_if(sides.begin(), sides.end(), [](const Plane* wall) { return wall != nullptr; }));
-  std::string reason =
-      in_words("sweep ", number, ": ", found, " of 4 walls found, without ", missing_sides(sides));
-  if (sweep.walls.size() > found) {
-    reason += in_words("; ", sweep.walls.size() - found, " other upright planes are more than ",
-                       spoken_deg(options.widest_skew_rad),
-                       " deg off the rig's sides: set the rig square to the room, or give the "
-                       "room's yaw");
-  } else {
-    reason += "; use a room with four plain walls in range";
-  }
-  return reason;
-}
-
-// Alpha as one sweep alone tells it, and how well.
-struct SweepAlpha {
-  double alpha_rad = 0.0;
-  double sigma_rad = 0.0;
-};
-
-SweepAlpha alpha_of(const AlphaSweep& sweep, const FourWalls& sides, const AlphaOptions& options) {
-  std::vector<double> errors_rad;
-  double variance = 0.0;
-  for (std::size_t wall = 0; wall < kWalls; ++wall) {
-    errors_rad.push_back(
-        wall_error_rad(*sides[wall], wall, sweep.beta_rad, options.initial_alpha_rad, options));
-    variance += std::pow(sides[wall]->azimuth_sigma_rad / kWalls, 2);
-  }
-  return {options.initial_alpha_rad - median(errors_rad),
-          std::hypot(sweep.beta_sigma_rad, std::sqrt(variance))};
-}
-
-// The robust loss is there for walls that are out of square. Where the sweeps themselves scatter
-// by more, it must not take them for that.
-AlphaOptions widened(const AlphaOptions& options, const std::vector<SweepAlpha>& alphas) {
-  std::vector<double> values;
-  values.reserve(alphas.size());
-  for (const SweepAlpha& alpha : alphas) values.push_back(alpha.alpha_rad);
-  const double middle_rad = median(values);
-  for (double& value : values) value = std::abs(value - middle_rad);
-  constexpr double kSdOfMedian = 1.4826;  // of absolute deviations, for a normal distribution
-  AlphaOptions wider = options;
-  wider.robust_scale_rad = std::max(options.robust_scale_rad, 2.0 * kSdOfMedian * median(values));
-  return wider;
-}
-
-std::string why_sweeps_disagree(const std::vector<SweepAlpha>& alphas,
-                                const AlphaOptions& options) {
-  std::vector<double> values;
-  values.reserve(alphas.size());
-  for (const SweepAlpha& alpha : alphas) values.push_back(alpha.alpha_rad);
-  const double middle_rad = median(values);
-  std::size_t worst = 0;
-  double worst_sigmas = 0.0;
-  for (std::size_t sweep = 0; sweep < alphas.size(); ++sweep) {
-    const double sigma_rad = std::max(alphas[sweep].sigma_rad, 1e-9);
-    const double sigmas = std::abs(alphas[sweep].alpha_rad - middle_rad) / sigma_rad;
-    if (sigmas > worst_sigmas) {
-      worst = sweep;
-      worst_sigmas = sigmas;
-    }
-  }
-  if (worst_sigmas <= options.widest_sweep_sigmas) return {};
-  return in_words("the sweeps disagree: sweep ", worst + 1, " is ",
-                  spoken_deg(alphas[worst].alpha_rad - middle_rad), " deg off the median, ",
-                  worst_sigmas, " times its sigma; see that rig and room stand still, then repeat");
-}
+constexpr double kUncheckedWallRad = rad_from_deg(0.1);  // how square a wall is, as walls are
+constexpr double kAsDrawnRad = rad_from_deg(5.0);        // a plate is mounted no worse than that
+constexpr double kNamedWallRad = rad_from_deg(0.2);      // a wall off square by more is named
+constexpr double kNoLossRad = 10.0;                      // a robust scale beyond any angle
 
 // Signed, unlike eq. (11) of the paper, whose absolute value has no derivative where it matters.
 struct WallResidual {
-  double nx;  // the wall's horizontal normal in O', turned by -beta
-  double ny;
-  double expected_rad;
+  double error_rad;  // if alpha were as drawn
+  double initial_alpha_rad;
+  double scale_rad;
 
   template <typename Scalar>
   bool operator()(const Scalar* alpha_rad, Scalar* residual) const {
-    const Scalar turn_rad = *alpha_rad - expected_rad;
-    *residual = ceres::sin(turn_rad) * nx + ceres::cos(turn_rad) * ny;
+    *residual = ceres::sin(*alpha_rad - initial_alpha_rad + error_rad) / scale_rad;
     return true;
   }
 };
 
-using Sides = std::vector<FourWalls>;
-
-void add_residuals(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
-                   const AlphaOptions& options, ceres::LossFunction* loss, double* alpha_rad,
-                   ceres::Problem& problem) {
-  for (std::size_t sweep = 0; sweep < sweeps.size(); ++sweep) {
-    for (std::size_t wall = 0; wall < kWalls; ++wall) {
-      const double azimuth_rad = sides[sweep][wall]->azimuth_rad() - sweeps[sweep].beta_rad;
-      auto* cost = new ceres::AutoDiffCostFunction<WallResidual, 1, 1>(new WallResidual{
-          std::cos(azimuth_rad), std::sin(azimuth_rad), expected_azimuth_rad(wall, options)});
-      problem.AddResidualBlock(cost, loss, alpha_rad);
-    }
-  }
+// Within this a wall's angle is no news: its noise, and how well walls are built.
+double wall_scale_rad(double normal_variance, const AlphaOptions& options) {
+  return std::sqrt(normal_variance + options.wall_floor_rad * options.wall_floor_rad);
 }
 
-// Levenberg-Marquardt, with the loss or (null) without.
-ceres::Solver::Summary solve(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
-                             const AlphaOptions& options, ceres::LossFunction* loss,
+// Geman and McClure's: a wall that is off by some scales is let go of altogether. Cauchy's would
+// let one that is half a degree off turn alpha by 0.006 deg.
+class LettingGo : public ceres::LossFunction {
+ public:
+  explicit LettingGo(double scale) : square_(scale * scale) {}
+  void Evaluate(double s, double out[3]) const override {
+    const double kept = square_ / (square_ + s);
+    out[0] = s * kept;
+    out[1] = kept * kept;
+    out[2] = -2.0 * kept * kept * kept / square_;
+  }
+
+ private:
+  double square_;
+};
+
+// Levenberg-Marquardt over the walls' angles. The walls agree by some degrees, as find_room_walls
+// saw to; the loss then lets go of one that does not.
+ceres::Solver::Summary solve(const WallAngles& angles, const AlphaOptions& options, LettingGo& loss,
                              double& alpha_rad) {
   ceres::Problem::Options ownership;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // all residuals share one
   ceres::Problem problem(ownership);
-  add_residuals(sweeps, sides, options, loss, &alpha_rad, problem);
+  for (Eigen::Index wall = 0; wall < angles.error_rad.size(); ++wall) {
+    auto* cost = new ceres::AutoDiffCostFunction<WallResidual, 1, 1>(
+        new WallResidual{angles.error_rad(wall), options.initial_alpha_rad,
+                         wall_scale_rad(angles.normal_variance(wall), options)});
+    problem.AddResidualBlock(cost, &loss, &alpha_rad);
+  }
   ceres::Solver::Options solver;
   solver.minimizer_type = ceres::TRUST_REGION;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
@@ -183,154 +77,171 @@ ceres::Solver::Summary solve(const std::vector<AlphaSweep>& sweeps, const Sides&
   return summary;
 }
 
-double error_after_rad(const AlphaSweep& sweep, const FourWalls& sides, std::size_t wall,
-                       double alpha_rad, const AlphaOptions& options) {
-  return wall_error_rad(*sides[wall], wall, sweep.beta_rad, alpha_rad, options);
+// Two walls do not tell which of them is askew, so no loss may choose.
+AlphaOptions with_loss_for(std::size_t walls, AlphaOptions options) {
+  if (walls < 3) options.robust_scale_rad = kNoLossRad;
+  return options;
 }
 
-// The weight that the robust loss leaves to an error.
-double weight(double error_rad, const AlphaOptions& options) {
-  return 1.0 / (1.0 + std::pow(error_rad / options.robust_scale_rad, 2));
-}
-
-// Two sides of a 68 % interval of Student's t, over that of a normal distribution.
-double small_sample_factor(std::size_t degrees_of_freedom) {
-  const auto freedom = static_cast<double>(degrees_of_freedom);
-  return 1.0 + 0.55 / freedom + 0.29 / (freedom * freedom);
-}
-
-// Eq. (11): the sweeps' scatter about the fit. The walls of one sweep share its beta and so
-// count as one.
-double scatter_sigma_rad(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
-                         double alpha_rad, const AlphaOptions& options) {
-  double weights = 0.0;
-  double squares = 0.0;
-  for (std::size_t sweep = 0; sweep < sweeps.size(); ++sweep) {
-    double pull_rad = 0.0;
-    for (std::size_t wall = 0; wall < kWalls; ++wall) {
-      const double error_rad =
-          error_after_rad(sweeps[sweep], sides[sweep], wall, alpha_rad, options);
-      weights += weight(error_rad, options);
-      pull_rad += weight(error_rad, options) * error_rad;
-    }
-    squares += pull_rad * pull_rad;
-  }
-  const auto count = static_cast<double>(sweeps.size());
-  return small_sample_factor(sweeps.size() - 1) * std::sqrt(squares * count / (count - 1.0)) /
-         weights;
-}
-
-// What the sweeps' own sigmas foretell for their mean.
-double foretold_sigma_rad(const std::vector<SweepAlpha>& alphas) {
-  double variance = 0.0;
-  for (const SweepAlpha& alpha : alphas) variance += alpha.sigma_rad * alpha.sigma_rad;
-  return std::sqrt(variance) / static_cast<double>(alphas.size());
-}
-
-// Eq. (12): walls that are not quite square stay so however many sweeps there are.
-double walls_sigma_rad(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
-                       const AlphaFit& fit, const AlphaOptions& options) {
-  double weights = 0.0;
-  double squares = 0.0;
-  for (std::size_t wall = 0; wall < kWalls; ++wall) {
-    double noise = 0.0;  // variance of the wall's mean angle, from its points
-    for (const FourWalls& four : sides) noise += std::pow(four[wall]->azimuth_sigma_rad, 2);
-    noise /= static_cast<double>(sweeps.size() * sweeps.size());
-    const double error_rad = fit.wall_angles_rad[wall];
-    const double wall_weight = weight(error_rad, options);
-    weights += wall_weight;
-    squares += wall_weight * wall_weight * std::max(0.0, error_rad * error_rad - noise);
-  }
-  return std::sqrt(squares * kWalls / (kWalls - 1.0)) / weights;
-}
-
-void measure_errors(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
-                    const AlphaOptions& options, AlphaFit& fit) {
-  const auto count = static_cast<double>(sweeps.size());
-  double squares = 0.0;
-  for (std::size_t wall = 0; wall < kWalls; ++wall) {
-    double sum_rad = 0.0;
-    for (std::size_t sweep = 0; sweep < sweeps.size(); ++sweep) {
-      const double error_rad =
-          error_after_rad(sweeps[sweep], sides[sweep], wall, fit.alpha_rad, options);
-      sum_rad += error_rad;
-      squares += error_rad * error_rad;
-    }
-    fit.wall_angles_rad[wall] = sum_rad / count;
-  }
-  fit.residual_rms_rad = std::sqrt(squares / (kWalls * count));
-}
-
-std::string why_room_is_skewed(const AlphaFit& fit, const AlphaOptions& options) {
-  for (std::size_t one = 0; one < kWalls; ++one) {
-    for (std::size_t other = one + 1; other < kWalls; ++other) {
-      const double off_rad = fit.wall_angles_rad[one] - fit.wall_angles_rad[other];
-      if (std::abs(off_rad) <= options.widest_corner_rad) continue;
-      return in_words("the ", kWallNames[one], " and ", kWallNames[other], " walls are ",
-                      spoken_deg(std::abs(off_rad)),
-                      " deg off square to each other: use a room with square corners");
-    }
-  }
-  return {};
-}
-
-// First without the robust loss, from anywhere; then with it, from there.
-AlphaFit fit_walls(const std::vector<AlphaSweep>& sweeps, const Sides& sides,
-                   const std::vector<SweepAlpha>& alphas, const AlphaOptions& options) {
+// From the middle of the walls: the loss has other valleys, farther off.
+AlphaFit fit_walls(const WallAngles& angles, const AlphaOptions& options) {
   AlphaFit fit;
-  fit.alpha_rad = options.initial_alpha_rad;
-  const auto plain = solve(sweeps, sides, options, nullptr, fit.alpha_rad);
-  ceres::CauchyLoss robust_loss(options.robust_scale_rad);
-  const auto robust = solve(sweeps, sides, options, &robust_loss, fit.alpha_rad);
-  fit.iterations = static_cast<int>(plain.iterations.size() + robust.iterations.size());
-  fit.converged =
-      plain.termination_type == ceres::CONVERGENCE && robust.termination_type == ceres::CONVERGENCE;
-  fit.sweeps_used = sweeps.size();
-  measure_errors(sweeps, sides, options, fit);
-  const double noise_rad = std::max(scatter_sigma_rad(sweeps, sides, fit.alpha_rad, options),
-                                    foretold_sigma_rad(alphas));
-  fit.sigma_rad = std::hypot(noise_rad, walls_sigma_rad(sweeps, sides, fit, options));
+  const std::vector<double> errors_rad(angles.error_rad.begin(), angles.error_rad.end());
+  fit.alpha_rad = options.initial_alpha_rad - median(errors_rad);
+  LettingGo loss(options.robust_scale_rad / options.wall_floor_rad);
+  const auto summary = solve(angles, options, loss, fit.alpha_rad);
+  fit.iterations = static_cast<int>(summary.iterations.size());
+  fit.converged = summary.termination_type == ceres::CONVERGENCE;
   return fit;
 }
 
-std::string why_input_is_useless(const std::vector<AlphaSweep>& sweeps,
-                                 const AlphaOptions& options) {
-  const std::size_t least =
-      std::max<std::size_t>(2, options.least_sweeps);  // or there is no scatter
-  if (sweeps.size() < least) {
-    return in_words("only ", sweeps.size(), " sweeps of the ", least, " needed at least");
+// The share of each wall in alpha, as the loss leaves it.
+Eigen::VectorXd shares(const Eigen::VectorXd& wall_errors_rad, const Eigen::VectorXd& variances,
+                       const AlphaOptions& options) {
+  Eigen::VectorXd weights(wall_errors_rad.size());
+  const double loss_scale = options.robust_scale_rad / options.wall_floor_rad;
+  for (Eigen::Index wall = 0; wall < weights.size(); ++wall) {
+    const double scale_rad = wall_scale_rad(variances(wall), options);
+    const double error = wall_errors_rad(wall) / (scale_rad * loss_scale);
+    weights(wall) = std::pow(scale_rad * (1.0 + error * error), -2);
   }
+  return weights / weights.sum();
+}
+
+// Eq. (12): walls that are not quite square stay so however many sweeps there are. Four that
+// agree tell how square they are; three, or four of which one counts for nothing, nearly so; two
+// do not.
+double walls_sigma_rad(const Eigen::VectorXd& wall_errors_rad, const Eigen::VectorXd& shares,
+                       const Eigen::VectorXd& variances) {
+  double squares = 0.0;
+  for (Eigen::Index wall = 0; wall < shares.size(); ++wall) {
+    const double noise = variances(wall);
+    const double skew = std::max(0.0, wall_errors_rad(wall) * wall_errors_rad(wall) - noise);
+    squares += shares(wall) * shares(wall) * skew;
+  }
+  const auto count = static_cast<double>(shares.size());
+  const double heard = 1.0 / shares.squaredNorm();  // walls, as if all counted for as much
+  const double unheard = std::max(0.0, kWalls - heard) / heard;
+  return std::sqrt(squares * count / (count - 1.0) +
+                   kUncheckedWallRad * kUncheckedWallRad * std::pow(unheard, 4));
+}
+
+void test_model(const ChiSquare& sweeps, const ChiSquare& walls, AlphaFit& fit) {
+  const ChiSquare all{sweeps.sum + walls.sum, sweeps.freedom + walls.freedom};
+  fit.chi_square = all.sum;
+  fit.degrees_of_freedom = static_cast<std::size_t>(all.freedom);
+  fit.model_holds = all.by_chance() && sweeps.by_chance() && walls.by_chance();
+  if (fit.model_holds) return;
+  const char* const who = sweeps.by_chance() ? "the walls' angles" : "the plate's azimuths";
+  fit.remarks.push_back(
+      in_words(who, " scatter more over the sweeps than their sigmas foretell ", "(chi-square ",
+               fit.chi_square, " of ", fit.degrees_of_freedom,
+               " degrees of freedom), so sigma is widened: see that rig, room and "
+               "plate stand still"));
+}
+
+void measure_errors(const Views& views, const WallAngles& angles, const RoomWalls& room,
+                    const AlphaOptions& options, AlphaFit& fit) {
+  const double moved_rad = fit.alpha_rad - options.initial_alpha_rad;
+  fit.wall_angles_rad.fill(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t wall = 0; wall < room.walls.size(); ++wall) {
+    const double angle_rad = angles.error_rad(static_cast<Eigen::Index>(wall)) + moved_rad;
+    fit.wall_angles_rad[room.walls[wall].side] = angle_rad;
+    if (std::abs(angle_rad) < kNamedWallRad) continue;
+    fit.remarks.push_back(in_words("the ", kWallNames[room.walls[wall].side], " wall is ",
+                                   spoken_deg(angle_rad), " deg off square and counts for little"));
+  }
+  double squares = 0.0;
+  double count = 0.0;
+  for (const SweepView& view : views) {
+    count += static_cast<double>(view.sightings.size());
+    for (const Sighting& sighting : view.sightings) {
+      squares += std::pow(sighting.error_rad + moved_rad, 2);
+    }
+  }
+  fit.residual_rms_rad = std::sqrt(squares / count);
+}
+
+void measure_sigma(const Views& views, const WallAngles& angles, const AlphaOptions& options,
+                   AlphaFit& fit) {
+  const double moved_rad = fit.alpha_rad - options.initial_alpha_rad;
+  const Eigen::VectorXd errors_rad = angles.error_rad.array() + moved_rad;
+  const Eigen::VectorXd share = shares(errors_rad, angles.normal_variance, options);
+  fit.sweeps_sigma_rad =
+      scatter_of_sweeps(views, angles).widening() * std::sqrt(share.dot(angles.covariance * share));
+  fit.walls_sigma_rad = walls_sigma_rad(errors_rad, share, angles.normal_variance);
+  fit.sigma_rad = std::hypot(fit.sweeps_sigma_rad, fit.walls_sigma_rad);
+}
+
+std::string why_input_is_useless(const std::vector<AlphaSweep>& sweeps) {
   for (std::size_t sweep = 0; sweep < sweeps.size(); ++sweep) {
     if (!std::isfinite(sweeps[sweep].beta_rad) || !std::isfinite(sweeps[sweep].beta_sigma_rad)) {
-      return in_words("sweep ", sweep + 1, " has no attitude: leave it out");
+      return in_words("sweep ", name_of(sweeps[sweep], sweep), " has no attitude: leave it out");
     }
   }
   return {};
+}
+
+std::string why_too_few(std::size_t sweeps, const AlphaOptions& options) {
+  const std::size_t least = std::max<std::size_t>(1, options.least_sweeps);
+  if (sweeps >= least) return {};
+  return in_words("only ", sweeps, " sweeps of the ", least, " needed at least");
+}
+
+void doubt(const AlphaOptions& options, AlphaFit& fit) {
+  if (fit.sweeps_used < 2) {
+    fit.remarks.emplace_back("one sweep cannot show whether its plate was found rightly");
+  }
+  const double moved_rad = fit.alpha_rad - options.initial_alpha_rad;
+  if (std::abs(moved_rad) < kAsDrawnRad) return;
+  fit.remarks.push_back(in_words("alpha is ", spoken_deg(moved_rad),
+                                 " deg off the drawing: does the rig stand square in the room?"));
+}
+
+AlphaResult refused(const std::string& reason) {
+  return {std::nullopt, reason};
 }
 
 }  // namespace
 
 AlphaResult fit_alpha(const std::vector<AlphaSweep>& sweeps, const AlphaOptions& options) {
-  const std::string useless = why_input_is_useless(sweeps, options);
-  if (!useless.empty()) return {std::nullopt, useless};
-  Sides sides;
-  std::vector<SweepAlpha> alphas;
-  for (const AlphaSweep& sweep : sweeps) {
-    sides.push_back(sort_walls(sweep, options));
-    if (!missing_sides(sides.back()).empty()) {
-      return {std::nullopt, why_walls_are_missing(sides.size(), sweep, sides.back(), options)};
-    }
-    alphas.push_back(alpha_of(sweep, sides.back(), options));
+  if (const auto why = why_input_is_useless(sweeps); !why.empty()) return refused(why);
+  if (const auto why = why_too_few(sweeps.size(), options); !why.empty()) return refused(why);
+  const RoomWalls room = find_room_walls(sweeps, options);
+  if (!room.reason.empty()) return refused(room.reason);
+  std::vector<std::string> remarks = room.remarks;
+  Views views = views_of(sweeps, room, options);
+  if (const auto blind = leave_out_blind(views); !blind.empty()) {
+    if (const auto why = why_too_few(views.size(), options); !why.empty())
+      return refused(why + "; " + blind);
+    remarks.push_back(blind);
   }
-  const std::string disagreement = why_sweeps_disagree(alphas, options);
-  if (!disagreement.empty()) return {std::nullopt, disagreement};
-  const AlphaFit fit = fit_walls(sweeps, sides, alphas, widened(options, alphas));
-  const std::string skewed = why_room_is_skewed(fit, options);
-  if (!skewed.empty()) return {std::nullopt, skewed};
-  if (!fit.converged) {
-    return {std::nullopt, in_words("the fit did not converge in ", fit.iterations, " iterations")};
-  }
-  return {fit, ""};
+  WallAngles angles = fit_wall_angles(room, views, remarks);
+  if (const auto why = why_sweeps_disagree(views, angles, options); !why.empty())
+    return refused(why);
+  const ChiSquare chi_of_sweeps = scatter_of_sweeps(views, angles);
+  const ChiSquare chi_of_walls = scatter_of_walls(views, angles);
+  angles = widen_normals(chi_of_walls.widening(), room, views);
+  const AlphaOptions heard = with_loss_for(room.walls.size(), options);
+  AlphaFit fit = fit_walls(angles, heard);
+  fit.sweeps_used = views.size();
+  fit.remarks = remarks;
+  measure_errors(views, angles, room, options, fit);
+  test_model(chi_of_sweeps, chi_of_walls, fit);
+  measure_sigma(views, angles, heard, fit);
+  doubt(options, fit);
+  if (fit.converged) return {fit, ""};
+  return refused(in_words("the fit did not converge in ", fit.iterations, " iterations"));
+}
+
+std::optional<std::size_t> more_sweeps_for(const AlphaFit& fit, double sigma_rad) {
+  if (fit.sigma_rad <= sigma_rad) return 0;
+  if (fit.walls_sigma_rad >= sigma_rad) return std::nullopt;
+  const double left_rad =
+      std::sqrt(sigma_rad * sigma_rad - fit.walls_sigma_rad * fit.walls_sigma_rad);
+  const double times = std::pow(fit.sweeps_sigma_rad / left_rad, 2);
+  const double needed = std::ceil(times * static_cast<double>(fit.sweeps_used) - 1e-9);
+  return static_cast<std::size_t>(needed) - fit.sweeps_used;
 }
 
 }  // namespace swivel

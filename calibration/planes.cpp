@@ -17,7 +17,9 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
-constexpr int kRansacRounds = 400;
+constexpr int kMostRansacRounds = 4000;
+constexpr std::size_t kRansacEffort = 8'000'000;  // points looked at for one plane: the fewer are
+                                                  // left, the more rounds, and the small are found
 constexpr int kRefinements = 4;
 constexpr double kKeptSigmas = 3.0;    // of the points that a plane is fitted to
 constexpr double kSharedStripM = 0.1;  // about another plane, where points could be either's
@@ -62,7 +64,8 @@ Plane facing_origin(const Eigen::Vector3d& normal, double offset_m) {
 std::optional<Plane> segment(const PclCloud::Ptr& cloud, double band_m) {
   const auto model = pcl::make_shared<pcl::SampleConsensusModelPlane<pcl::PointXYZ>>(cloud);
   pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(model, band_m);
-  consensus.setMaxIterations(kRansacRounds);
+  const auto rounds = static_cast<int>(kRansacEffort / cloud->size());
+  consensus.setMaxIterations(std::min(rounds, kMostRansacRounds));
   if (!consensus.computeModel()) return std::nullopt;
   Eigen::VectorXf found;
   pcl::Indices inliers;
@@ -100,9 +103,13 @@ struct Moments {
   }
 };
 
+// Told by where the point's ray meets its own plane: by the noisy point itself, more of the noise
+// towards the other plane than away from it would go, and turn the fit.
 bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen::Vector3f& point) {
+  const double along_ray = -planes[own].distance_m / planes[own].normal.dot(point.cast<double>());
+  const Eigen::Vector3f foot = static_cast<float>(along_ray) * point;
   for (std::size_t other = 0; other < planes.size(); ++other) {
-    if (other != own && std::abs(height_over(planes[other], point)) < kSharedStripM) return true;
+    if (other != own && std::abs(height_over(planes[other], foot)) < kSharedStripM) return true;
   }
   return false;
 }
@@ -127,6 +134,8 @@ std::optional<Plane> fit(const Moments& moments) {
   plane.points = moments.count;
   const Eigen::Vector3d level = Eigen::Vector3d::UnitZ().cross(plane.normal);
   const double spread_m2 = level.dot(moments.scatter() * level) / level.squaredNorm();
+  plane.length_m = std::sqrt(12.0 * std::max(spread_m2, 0.0));
+  plane.height_m = std::sqrt(12.0 * std::max(moments.scatter()(2, 2), 0.0));
   plane.azimuth_sigma_rad =
       plane.rms_m / std::sqrt(static_cast<double>(plane.points) * std::max(spread_m2, 1e-12));
   return plane;

@@ -17,6 +17,8 @@ struct Plane {
   double distance_m = 0.0;                            // of the origin from the plane, >= 0
   double rms_m = 0.0;                                 // thickness: sd of its points' distances
   std::size_t points = 0;                             // within three times that
+  double length_m = 0.0;  // how far it reaches, level and up, were its points spread evenly
+  double height_m = 0.0;
   // Of the normal's azimuth about Z, from the points' noise alone: a wall that is not flat or
   // not square is wrong by more.
   double azimuth_sigma_rad = 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,18 +17,28 @@ struct LidarName {
   std::string firmware;
 };
 
+struct AlphaWishes {
+  double room_yaw_deg = 0.0;
+  std::size_t least_sweeps = AlphaOptions().least_sweeps;
+  std::optional<double> sigma_deg = std::nullopt;  // then the outcome says how many sweeps it takes
+};
+
+// How many more sweeps such a sigma takes, or that none will do.
+std::string more_sweeps_in_words(const AlphaFit& fit, double sigma_deg);
+
 class AlphaCalibration {
  public:
   // Throws ConfigurationError where the rig has no plate.
-  AlphaCalibration(const RigFile& rig, double room_yaw_deg);
+  AlphaCalibration(const RigFile& rig, const AlphaWishes& wishes);
 
-  // cloud: the sweep's raw cloud, in frame O'. Says in words why the sweep is left out, or what
-  // it brought.
+  // cloud: the sweep's raw cloud, in frame O'. name: as the user knows the sweep, or empty for its
+  // id. Says in words why the sweep is left out, or what it brought.
   struct Added {
     bool used;
     std::string words;
   };
-  Added add(const msg::Attitude& attitude, const OrganisedCloud& cloud);
+  Added add(const msg::Attitude& attitude, const OrganisedCloud& cloud,
+            const std::string& name = "");
 
   std::size_t sweeps_used() const { return sweeps_.size(); }
 
@@ -38,14 +49,16 @@ class AlphaCalibration {
   Outcome fit(const LidarName& lidar, std::int64_t time_ns) const;
 
  private:
+  std::string origin_in_words(const AlphaFit& fit) const;
   msg::Calibration to_message(const AlphaFit& fit, const LidarName& lidar,
                               std::int64_t time_ns) const;
 
   std::string rig_;
   AlphaOptions options_;
   std::vector<AlphaSweep> sweeps_;
+  std::optional<double> wanted_sigma_deg_;
   std::string estimator_;
-  int mode_ = 0;
+  std::set<int> modes_;
 };
 
 }  // namespace swivel

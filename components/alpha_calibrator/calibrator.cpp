@@ -29,7 +29,7 @@ void Calibrator::take(const msg::CalibrationRequest& request) {
     return outputs_.tell(refusal);
   }
   last_request_id_ = request.request_id();
-  run_.emplace(Run{AlphaCalibration(rig_, request.room_yaw_deg()),
+  run_.emplace(Run{AlphaCalibration(rig_, {request.room_yaw_deg()}),
                    request.request_id(),
                    request.count(),
                    0,

@@ -63,6 +63,8 @@ std::string to_yaml(const msg::Calibration& calibration) {
        << "mounting_xyz_mm: " << list_of(calibration.mounting_xyz_mm()) << "\n"
        << "mounting_rpy_deg: " << list_of(calibration.mounting_rpy_deg()) << "\n"
        << "residual_deg: " << calibration.residual_deg() << "\n"
+       << "chi_square: " << calibration.chi_square() << "\n"
+       << "degrees_of_freedom: " << calibration.degrees_of_freedom() << "\n"
        << "sweeps_used: " << calibration.sweeps_used() << "\n"
        << "mode: " << int{calibration.mode()} << "\n"
        << "serial_number: " << quoted(calibration.serial_number()) << "\n"
@@ -104,6 +106,10 @@ msg::Calibration load_calibration(const std::string& path) {
   std::copy(xyz_mm.begin(), xyz_mm.end(), calibration.mounting_xyz_mm().begin());
   std::copy(rpy_deg.begin(), rpy_deg.end(), calibration.mounting_rpy_deg().begin());
   calibration.residual_deg(file.number("residual_deg", {0.0, 360.0}));
+  // Files from before there was a test have neither.
+  calibration.chi_square(file.number("chi_square", {0.0, 1e12}, 0.0));
+  calibration.degrees_of_freedom(
+      static_cast<std::uint32_t>(file.integer("degrees_of_freedom", {0.0, 1e9}, 0)));
   calibration.sweeps_used(static_cast<std::uint32_t>(file.integer("sweeps_used", {0.0, 1e6})));
   calibration.mode(static_cast<std::uint8_t>(file.integer("mode", {0.0, 255.0})));
   calibration.serial_number(file.text("serial_number"));

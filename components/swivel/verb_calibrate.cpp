@@ -24,7 +24,9 @@ struct CalibrateOptions {
   std::string folder;
   std::string rig_file;
   std::optional<double> room_yaw_deg;
-  int mode = 7;  // live
+  std::optional<double> sigma_deg;                        // recorded
+  std::size_t least_sweeps = AlphaWishes().least_sweeps;  // recorded
+  int mode = 7;                                           // live
   int count = 5;
 };
 
@@ -42,12 +44,15 @@ int calibrate_alpha(const CalibrateOptions& options) {
   const RecordingFacts facts = recording.facts();
   const RigFile rig = rig_of(facts, options.recording, options.rig_file);
   const double recorded_yaw_deg = facts.plate ? facts.plate->room_yaw_deg : 0.0;
-  AlphaCalibration alpha(rig, options.room_yaw_deg.value_or(recorded_yaw_deg));
+  AlphaCalibration alpha(rig, {options.room_yaw_deg.value_or(recorded_yaw_deg),
+                               options.least_sweeps, options.sigma_deg});
   make_folder(options.folder);
 
   run_offline(std::move(recording), rig, std::nullopt, [&](const ProcessedSweep& processed) {
-    const auto added = alpha.add(processed.attitude, processed.raw);
-    std::cout << "sweep " << processed.index << ": " << added.words << std::endl;
+    const std::string name = std::to_string(processed.index);
+    const auto added = alpha.add(processed.attitude, processed.raw, name);
+    std::cout << "sweep " << name << ": " << (added.used ? "" : "left out: ") << added.words
+              << std::endl;
   });
   const msg::Calibration calibration = fit(alpha, options.recording);
   const std::string path = options.folder + "/calibration.yaml";
@@ -77,7 +82,7 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
       app.add_subcommand("calibrate", "Finds what the drawing does not say");
   calibrate->require_subcommand(1);
   CLI::App* const verb =
-      calibrate->add_subcommand("alpha", "The plate's azimuth, from the walls of a square room");
+      calibrate->add_subcommand("alpha", "The plate's azimuth, from the walls of a room");
   const auto common = std::make_shared<CommonOptions>();
   const auto options = std::make_shared<CalibrateOptions>();
   auto* const recording = verb->add_option("recording", options->recording,
@@ -91,6 +96,15 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->capture_default_str();
   verb->add_option("--room-yaw-deg", options->room_yaw_deg,
                    "Azimuth of the room's front as the rig stands [as recorded, or 0]");
+  verb->add_option("--sigma-deg", options->sigma_deg,
+                   "Says how many more sweeps bring alpha to this sigma")
+      ->check(CLI::PositiveNumber)
+      ->needs(recording);
+  verb->add_option("--least-sweeps", options->least_sweeps,
+                   "Fewer are refused; a single one has nothing to check it")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->needs(recording);
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
     options->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";

@@ -108,6 +108,44 @@ TEST(Planes, WallsAreUprightAndLargestFirst) {
   EXPECT_EQ(find_walls(Room(0.3, 0.01, 5).cloud(40, 1081), 2).size(), 2U);
 }
 
+TEST(Planes, AWallReachesFurtherThanTheCupboardBeforeIt) {
+  PlaneOptions options;
+  options.least_share = 0.01;
+  const auto walls = find_walls(Room(0.3, 0.01, 5).cloud(80, 1081), 8, options);
+  const Plane* const doors = wall_like(walls, {180.0, 2.4}, 0.3);
+  const Plane* const wall = wall_like(walls, kRoomWalls[0], 0.3);
+  ASSERT_NE(doors, nullptr);
+  ASSERT_NE(wall, nullptr);
+  EXPECT_NEAR(doors->length_m, 1.0, 0.15);
+  EXPECT_NEAR(doors->height_m, 1.5, 0.25);
+  EXPECT_NEAR(wall->length_m, 4.5, 0.8);
+  EXPECT_NEAR(wall->height_m, 2.7, 0.4);
+}
+
+// Where two walls meet at an obtuse angle, each takes points of the other.
+TEST(Planes, AnObtuseCornerTurnsNeitherOfItsWalls) {
+  const double other_rad = rad_from_deg(28.0);
+  const Eigen::Vector2d other(std::cos(other_rad), std::sin(other_rad));
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise_m(0.0, 0.015);
+  std::uniform_real_distribution<double> azimuth_rad(-0.35, 0.75);
+  std::uniform_real_distribution<double> slope(-0.4, 0.4);
+  OrganisedCloud cloud(120, 1081);
+  for (CloudPoint& point : cloud.points) {
+    const double azimuth = azimuth_rad(random);
+    const Eigen::Vector2d level(std::cos(azimuth), std::sin(azimuth));
+    const double range_m = std::min(3.0 / level.x(), 3.1 / level.dot(other)) + noise_m(random);
+    point = {static_cast<float>(range_m * level.x()), static_cast<float>(range_m * level.y()),
+             static_cast<float>(range_m * slope(random)), 1.0F};
+  }
+  const auto walls = find_walls(cloud, 4);
+  for (const KnownWall& known : {KnownWall{180.0, 3.0}, KnownWall{-152.0, 3.1}}) {
+    const Plane* const wall = wall_like(walls, known, 0.0);
+    ASSERT_NE(wall, nullptr) << known.azimuth_deg;
+    EXPECT_NEAR(azimuth_error_rad(*wall, known, 0.0), 0.0, 4 * wall->azimuth_sigma_rad);
+  }
+}
+
 TEST(Planes, AnyDirectionIncludesFloorAndRoofWithTheirThickness) {
   const auto planes = find_planes(Room(0.3, 0.012, 6).cloud(80, 1081), 6);
   ASSERT_GE(planes.size(), 5U);

@@ -46,6 +46,8 @@ msg::Calibration awkward_calibration() {
     calibration.covariance()[index] = 1.0 / (3.0 + static_cast<double>(index));
   }
   calibration.residual_deg(0.0437);
+  calibration.chi_square(100.0 / 7.0);
+  calibration.degrees_of_freedom(16);
   calibration.sweeps_used(50);
   calibration.mode(7);
   calibration.serial_number("H1\"23\\4: #x");
@@ -62,6 +64,20 @@ TEST_F(CalibrationFile, ComesBackExactly) {
   expected.provenance("four walls, it's  told");
   EXPECT_TRUE(load_calibration(path) == expected);
   EXPECT_DOUBLE_EQ(alpha_sigma_deg(saved), std::sqrt(1.0 / 3.0));
+}
+
+TEST_F(CalibrationFile, OneFromBeforeThereWasATestIsRead) {
+  const std::string path = folder_ / "rig.yaml";
+  ASSERT_EQ(save_calibration(awkward_calibration(), path), "");
+  std::ostringstream whole;
+  whole << std::ifstream(path).rdbuf();
+  std::string text = whole.str();
+  const auto start = text.find("chi_square");
+  text.erase(start, text.find("sweeps_used") - start);
+  msg::Calibration expected = load_calibration(path);
+  expected.chi_square(0.0);
+  expected.degrees_of_freedom(0);
+  EXPECT_TRUE(load_calibration(write(text)) == expected);
 }
 
 TEST_F(CalibrationFile, ReplacesTheOneBefore) {
