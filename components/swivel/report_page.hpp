@@ -1,0 +1,31 @@
+// A page of HTML with its pictures inside: one file, readable without a network.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "components/swivel/findings.hpp"
+
+namespace swivel {
+
+// & < > " and ' as entities.
+std::string escaped(const std::string& text);
+
+std::string base64(const std::string& bytes);
+
+struct Figure {
+  std::string path;  // of the PNG
+  std::string heading;
+  std::string caption;  // what one sees
+};
+
+struct PageHead {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> facts;  // name, value
+};
+
+// Throws ExitError where a picture cannot be read.
+std::string report_page(const PageHead& head, const Evaluation& evaluation,
+                        const std::vector<Figure>& figures);
+
+}  // namespace swivel
