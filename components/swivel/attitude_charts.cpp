@@ -92,6 +92,15 @@ std::vector<double> errors_deg(const std::vector<SweepAttitude>& attitudes, Erro
   return errors;
 }
 
+std::vector<double> ends_of_sigmas_deg(const std::vector<SweepAttitude>& attitudes) {
+  std::vector<double> ends;
+  for (const SweepAttitude& attitude : attitudes) {
+    ends.push_back(deg_from_rad(attitude.with_rad - attitude.sigma_rad));
+    ends.push_back(deg_from_rad(attitude.with_rad + attitude.sigma_rad));
+  }
+  return ends;
+}
+
 }  // namespace
 
 Outcome write_sweeps_chart(const std::string& path, const std::string& title,
@@ -100,6 +109,7 @@ Outcome write_sweeps_chart(const std::string& path, const std::string& title,
   std::vector<double> both = errors_deg(sweeps, &SweepAttitude::without_rad);
   const std::vector<double> with = errors_deg(sweeps, &SweepAttitude::with_rad);
   both.insert(both.end(), with.begin(), with.end());
+  const std::vector<double> with_sigmas = ends_of_sigmas_deg(sweeps);
   const Span across{-0.6, static_cast<double>(sweeps.size()) - 0.4};
 
   Paper paper(kWidth, 800);
@@ -114,7 +124,8 @@ Outcome write_sweeps_chart(const std::string& path, const std::string& title,
     if (!sweeps[place].corrected) whole.cross(static_cast<double>(place), 0.0, kGrey);
   draw_mode_segments(whole, sweeps);
 
-  Chart close(paper, {kLeft, 460, kWidth - kLeft - 40, 260}, across, span_of_errors(with, 0.1));
+  Chart close(paper, {kLeft, 460, kWidth - kLeft - 40, 260}, across,
+              span_of_errors(with_sigmas, 0.1));
   close.draw_axes("", "phi_error with correction alone, deg; the bars are the sigma that was said");
   close.line(across.lowest, 0.0, across.highest, 0.0, kGrey, 1);
   draw_sigmas(close, sweeps);
@@ -186,7 +197,7 @@ Outcome write_modes_chart(const std::string& path, const std::string& title,
 
 namespace {
 
-constexpr int kPanelsARow = 4;
+constexpr int kPanelsARow = 3;
 constexpr int kPanelHeight = 340;
 constexpr double kShown_mm = 200.0;
 
@@ -208,12 +219,13 @@ void draw_wedge(Chart& chart, const AngleStatistics& errors, const Colour& pale,
 void draw_kept(Chart& chart, const AngleStatistics& errors) {
   if (errors.count == 0) return;
   const double kept_m = kept_up_to_m(errors.largest_rad());
-  const double sign = std::abs(errors.lowest_rad) > std::abs(errors.highest_rad) ? -1.0 : 1.0;
-  const double reached_mm = sign * std::abs(map_error_mm(kept_m, errors.largest_rad()));
-  chart.dashed(kept_m, -kShown_mm, kept_m, reached_mm, kBlack, 1);
+  const bool below = std::abs(errors.lowest_rad) > std::abs(errors.highest_rad);
+  const double worst_rad = below ? errors.lowest_rad : errors.highest_rad;
+  const double reached_mm = map_error_mm(kept_m, worst_rad);
+  chart.dashed(kept_m, -0.8 * kShown_mm, kept_m, reached_mm, kBlack, 1);
   chart.dot(kept_m, reached_mm, kBlack, 5);
-  const std::string words = kept_m < kMapReach_m ? "kept up to " + with_decimals(kept_m, 2) + " m"
-                                                 : "kept up to 10 m, the reach";
+  const std::string words =
+      "kept up to " + with_decimals(kept_m, kept_m < kMapReach_m ? 2 : 0) + " m";
   const int half = chart.paper().width_of(words, 16) / 2;
   const cv::Rect& area = chart.area();
   const int middle = std::clamp(chart.at(kept_m, 0.0).x, area.x + half + 6, area.br().x - half - 6);

@@ -116,9 +116,9 @@ void Chart::cross(double x, double y, const Colour& colour) {
   cv::drawMarker(paper_.pixels(), at(x, y), colour, cv::MARKER_TILTED_CROSS, 14, 2, cv::LINE_AA);
 }
 
-void Chart::speck(double x, double y, const Colour& colour) {
+void Chart::speck(double x, double y, const Colour& colour, int size) {
   if (!holds(x, y)) return;
-  const cv::Rect place(at(x, y), cv::Size(2, 2));
+  const cv::Rect place(at(x, y) - cv::Point(size / 2, size / 2), cv::Size(size, size));
   paper_.pixels()(place & area_) = colour;
 }
 

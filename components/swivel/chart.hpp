@@ -33,7 +33,7 @@ class Chart {
   void area_between(double x0, double y0, double x1, double y1, const Colour& colour);  // from 0, 0
   void dot(double x, double y, const Colour& colour, int radius = 5);
   void cross(double x, double y, const Colour& colour);
-  void speck(double x, double y, const Colour& colour);  // one of many
+  void speck(double x, double y, const Colour& colour, int size = 2);  // one of many
 
   const cv::Rect& area() const { return area_; }
   Paper& paper() { return paper_; }

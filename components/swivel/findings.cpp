@@ -108,8 +108,11 @@ void find_constant_part(const Evaluation& evaluation, Findings& findings) {
   std::string words =
       fmt::format("All sweeps share an error of {:+.3f} deg.", deg_from_rad(errors.mean_rad));
   if (!std::isnan(evaluation.true_alpha_deg))
-    words += fmt::format(" Alpha was taken as {:.3f} deg and is really {:.3f} deg.",
-                         evaluation.alpha_deg, evaluation.true_alpha_deg);
+    words += fmt::format(
+        " Alpha was taken as {:.3f} deg and is really {:.3f} deg, which makes {:+.3f} "
+        "deg of it; what is left is the estimator's.",
+        evaluation.alpha_deg, evaluation.true_alpha_deg,
+        evaluation.true_alpha_deg - evaluation.alpha_deg);
   words += evaluation.alpha_calibrated
                ? " Was the plate moved since the calibration? See: swivel calibrate alpha."
                : " Alpha stands as drawn: swivel calibrate alpha takes this part away.";
@@ -187,15 +190,15 @@ void find_what_is_not_told(const Evaluation& evaluation, const std::vector<ModeE
                            Findings& findings) {
   if (evaluation.reference == Reference::kOtherSweeps)
     note(findings,
-         "There is no truth beside the sweeps, so phi_error is against the median of all "
+         "phi_error is against the median of all "
          "sweeps, by their walls: an error that all share, as alpha's, is not in it.");
   if (evaluation.reference == Reference::kSquareWalls)
     note(findings,
-         "There is no truth beside the sweep, so phi_error is against the walls: it holds "
+         "phi_error is against the walls: it holds "
          "only if the room is square and the rig stood square in it.");
   if (evaluation.reference == Reference::kNone && !evaluation.axis_measured)
     note(findings,
-         "phi_error is not known: there is no truth beside the recording, and no walls by "
+         "phi_error is not known: there is neither a truth beside the sweeps, nor walls by "
          "which to judge.");
   std::string few;
   for (const ModeEvaluation& mode : modes)
@@ -241,7 +244,7 @@ std::vector<Finding> findings_of(const Evaluation& evaluation) {
   find_remarks(evaluation, findings);
   if (!evaluation.axis_measured) find_what_is_not_told(evaluation, modes, findings);
   const auto order = [](Finding::Kind kind) {
-    return kind == Finding::Kind::kBad ? 1 : kind == Finding::Kind::kGood ? 0 : 2;
+    return kind == Finding::Kind::kBad ? 0 : kind == Finding::Kind::kGood ? 1 : 2;
   };
   std::stable_sort(findings.begin(), findings.end(), [&](const auto& one, const auto& other) {
     return order(one.kind) < order(other.kind);

@@ -27,6 +27,7 @@ struct Evaluation {
   bool alpha_calibrated = false;
   double alpha_deg = kUnknownAngle;
   double true_alpha_deg = kUnknownAngle;
+  bool naive = false;  // lidar and motor started together: the clouds are bent
   Reference reference = Reference::kNone;
   std::vector<SweepFacts> sweeps;
 

@@ -132,12 +132,18 @@ std::string bytes_of(const std::string& path) {
   return bytes.str();
 }
 
+std::string picture_html(const Picture& picture, const std::string& heading) {
+  const std::string label = escaped(picture.label.empty() ? heading : picture.label);
+  return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n", label,
+                     base64(bytes_of(picture.path))) +
+         (picture.label.empty() ? "" : "<p class=\"small\">" + label + "</p>\n");
+}
+
 std::string figure_html(const Figure& figure, std::size_t number) {
-  return fmt::format(
-      "<figure>\n<h2>{}. {}</h2>\n<figcaption>{}</figcaption>\n"
-      "<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n</figure>\n",
-      number, escaped(figure.heading), escaped(figure.caption), escaped(figure.heading),
-      base64(bytes_of(figure.path)));
+  std::string html = fmt::format("<figure>\n<h2>{}. {}</h2>\n<figcaption>{}</figcaption>\n", number,
+                                 escaped(figure.heading), escaped(figure.caption));
+  for (const Picture& picture : figure.pictures) html += picture_html(picture, figure.heading);
+  return html + "</figure>\n";
 }
 
 std::string fact_list(const PageHead& head) {
@@ -203,7 +209,8 @@ std::string report_page(const PageHead& head, const Evaluation& evaluation,
   page += "<h2>What is good, what is not</h2>\n" + finding_list(evaluation);
   page += "<h2>Sweeps</h2>\n" + verdict_table(evaluation) + sweep_table(evaluation);
   std::size_t number = 0;
-  for (const Figure& figure : figures) page += figure_html(figure, ++number);
+  for (const Figure& figure : figures)
+    if (!figure.pictures.empty()) page += figure_html(figure, ++number);
   return page + "</body>\n</html>\n";
 }
 

@@ -13,10 +13,15 @@ std::string escaped(const std::string& text);
 
 std::string base64(const std::string& bytes);
 
+struct Picture {
+  std::string path;   // of the PNG
+  std::string label;  // which sweep; empty where it is of all
+};
+
 struct Figure {
-  std::string path;  // of the PNG
   std::string heading;
   std::string caption;  // what one sees
+  std::vector<Picture> pictures;
 };
 
 struct PageHead {

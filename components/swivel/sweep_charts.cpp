@@ -30,35 +30,38 @@ void head(Paper& paper, const std::string& what, const PictureCaption& caption) 
   paper.write(sweep_words(caption), {kSheetLeft, 66}, 18, kGrey);
 }
 
-// Means of values over equal steps of a place.
-class BinnedMeans {
+// Means of what belongs together, drawn as one line where it lies side by side.
+class Means {
  public:
-  explicit BinnedMeans(double step) : step_(step) {}
-
-  void add(double place, double value) {
-    auto& [sum, count] = bins_[std::lround(place / step_)];
-    sum += value;
-    ++count;
+  void add(long group, double place, double value) {
+    Sum& sum = sums_[group];
+    sum.place += place;
+    sum.value += value;
+    sum.count += 1.0;
   }
 
-  // Only those that rest on some points.
   void draw(Chart& chart, const Colour& colour) const {
-    constexpr int kLeast = 8;
-    const std::pair<double, double>* before = nullptr;
-    std::pair<double, double> here, last;
-    for (const auto& [bin, sum] : bins_) {
-      if (sum.second < kLeast) continue;
-      here = {static_cast<double>(bin) * step_, sum.first / sum.second};
-      if (before != nullptr && here.first - before->first < 2.5 * step_)
-        chart.line(before->first, before->second, here.first, here.second, colour, 3);
-      last = here;
-      before = &last;
+    const Sum* before = nullptr;
+    long group_before = 0;
+    for (const auto& [group, sum] : sums_) {
+      if (sum.count < kLeastPoints) continue;
+      if (before != nullptr && group - group_before <= 2)
+        chart.line(before->place / before->count, before->value / before->count,
+                   sum.place / sum.count, sum.value / sum.count, colour, 3);
+      chart.dot(sum.place / sum.count, sum.value / sum.count, colour, 3);
+      before = &sum;
+      group_before = group;
     }
   }
 
  private:
-  double step_;
-  std::map<long, std::pair<double, int>> bins_;  // sum and count
+  static constexpr double kLeastPoints = 8.0;
+  struct Sum {
+    double place = 0.0;
+    double value = 0.0;
+    double count = 0.0;
+  };
+  std::map<long, Sum> sums_;
 };
 
 using Place = double SurfacePoint::*;
@@ -78,18 +81,23 @@ Span extent_of(const Surface& surface, Place place) {
 
 constexpr double kShownOff_mm = 80.0;
 
-// Points off the plane over a place on it; the mean dark.
-void draw_profile(Chart& chart, const Surface& surface, Place place, const std::string& name) {
-  constexpr std::size_t kMostSpecks = 8000;  // more say no more
+enum class MeanOf { kLine, kHeight };
+
+// Points off the plane over a place on it; dark the mean of each scan line, or of each 0.1 m.
+void draw_profile(Chart& chart, const Surface& surface, Place place, MeanOf mean_of,
+                  const std::string& name) {
+  constexpr std::size_t kMostSpecks = 5000;  // more say no more
   const double band_mm = mm_from_m(kLidarBand_m);
   chart.band(-band_mm, band_mm, kPaleBand);
   chart.draw_axes(name, "off the plane, mm");
   const std::size_t stride = 1 + surface.points.size() / kMostSpecks;
-  BinnedMeans means(0.1);
+  Means means;
   for (std::size_t index = 0; index < surface.points.size(); ++index) {
     const SurfacePoint& point = surface.points[index];
     if (index % stride == 0) chart.speck(point.*place, mm_from_m(point.off_m), kSkyBlue);
-    means.add(point.*place, mm_from_m(point.off_m));
+    const long group =
+        mean_of == MeanOf::kLine ? static_cast<long>(point.line) : std::lround(point.*place / 0.1);
+    means.add(group, point.*place, mm_from_m(point.off_m));
   }
   const Span span = extent_of(surface, place);
   for (const double bound_mm : {-band_mm, band_mm})
@@ -145,9 +153,9 @@ Outcome write_surfaces_chart(const std::string& path, const std::vector<Surface>
   Paper paper(kSheetWidth, 120 + std::max(count, 1) * kRow + 20);
   head(paper, "points off their fitted planes", caption);
   paper.write_legend({{kSkyBlue, "points; histogram"},
-                      {kBlack, "their mean, every 0.1 m"},
-                      {kBlue, "normal distribution of that sd"},
-                      {kGrey, "+-40 mm, the lidar's accuracy"}},
+                      {kBlack, "mean a line, or a 0.1 m"},
+                      {kBlue, "normal distribution, same sd"},
+                      {kGrey, "+-40 mm"}},
                      {kSheetLeft, 98});
   for (int row = 0; row < count; ++row) {
     const Surface& surface = surfaces[static_cast<std::size_t>(row)];
@@ -156,10 +164,11 @@ Outcome write_surfaces_chart(const std::string& path, const std::vector<Surface>
     const cv::Rect first(kSheetLeft, top + 64, 420, 160);
     Chart along(paper, first, extent_of(surface, &SurfacePoint::along_m),
                 {-kShownOff_mm, kShownOff_mm});
-    draw_profile(along, surface, &SurfacePoint::along_m, "along it, m (to the left)");
+    draw_profile(along, surface, &SurfacePoint::along_m, MeanOf::kLine,
+                 "along it, m (to the left)");
     Chart up(paper, first + cv::Point(500, 0) - cv::Size(180, 0),
              extent_of(surface, &SurfacePoint::up_m), {-kShownOff_mm, kShownOff_mm});
-    draw_profile(up, surface, &SurfacePoint::up_m, "up it, m");
+    draw_profile(up, surface, &SurfacePoint::up_m, MeanOf::kHeight, "up it, m");
     draw_histogram(paper, {first.x + 820, first.y, 270, 160}, surface);
   }
   if (count == 0) paper.write("no plane was found", {kSheetLeft, 220}, 20, kBlack);
@@ -169,6 +178,7 @@ Outcome write_surfaces_chart(const std::string& path, const std::vector<Surface>
 namespace {
 
 const Colour kPalePoint(216, 216, 216);
+const Colour kPaleLast(150, 185, 245);
 
 enum class End { kMiddle, kFirst, kLast };
 
@@ -201,19 +211,19 @@ void draw_map(Paper& paper, const cv::Rect& area, const OrganisedCloud& cloud, d
   chart.dot(0.0, 0.0, kBlack, 4);
 }
 
-// A straight line, by least squares.
+// Distance off a wall over place along it, by least squares.
 struct Straight {
   double at_zero = 0.0;
   double slope = 0.0;
 };
 
-Straight fit_straight(const std::vector<std::pair<double, double>>& points) {
+Straight fit_straight(const std::vector<SurfacePoint>& points) {
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-  for (const auto& [place, value] : points) {
-    x += place;
-    y += value;
-    xx += place * place;
-    xy += place * value;
+  for (const SurfacePoint& point : points) {
+    x += point.along_m;
+    y += point.off_m;
+    xx += point.along_m * point.along_m;
+    xy += point.along_m * point.off_m;
   }
   const auto count = static_cast<double>(points.size());
   const double spread = count * xx - x * x;
@@ -225,32 +235,32 @@ Straight fit_straight(const std::vector<std::pair<double, double>>& points) {
 constexpr double kSeamShown_m = 1.6;  // of the wall, to either side
 constexpr double kSeamShown_mm = 60.0;
 
-// Places from the seam and distances off the wall, by which the first lines lie level.
+// How far the points about the seam lie off a wall that the first lines see level.
 void draw_seam_place(Paper& paper, const cv::Rect& area, const Surface& wall,
                      const SeamPlace& place, std::size_t lines) {
-  std::map<End, std::vector<std::pair<double, double>>> points;
-  for (const SurfacePoint& point : wall.points) {
-    const double from_seam_m = point.along_m - place.along_m;
-    if (std::abs(from_seam_m) < kSeamShown_m)
-      points[end_of(point.line, lines)].emplace_back(from_seam_m, mm_from_m(point.off_m));
+  std::map<End, std::vector<SurfacePoint>> points;
+  for (SurfacePoint point : wall.points) {
+    point.along_m -= place.along_m;
+    if (std::abs(point.along_m) < kSeamShown_m) points[end_of(point.line, lines)].push_back(point);
   }
   const Straight level = fit_straight(points[End::kFirst]);
   Chart chart(paper, area, {-kSeamShown_m, kSeamShown_m}, {-kSeamShown_mm, kSeamShown_mm});
   chart.draw_axes("along the " + wall.name + " from the seam, m", "off the first lines' wall, mm");
   for (const End end : {End::kFirst, End::kLast}) {
-    BinnedMeans means(0.1);
+    Means means;
     const std::size_t stride = 1 + points[end].size() / 4000;
     for (std::size_t index = 0; index < points[end].size(); ++index) {
-      const auto [x_m, off_mm] = points[end][index];
-      const double left_mm = off_mm - level.at_zero - level.slope * x_m;
-      if (index % stride == 0) chart.speck(x_m, left_mm, end == End::kFirst ? kSkyBlue : kOrange);
-      means.add(x_m, left_mm);
+      const SurfacePoint& point = points[end][index];
+      const double off_mm = mm_from_m(point.off_m - level.at_zero - level.slope * point.along_m);
+      if (index % stride == 0)
+        chart.speck(point.along_m, off_mm, end == End::kFirst ? kSkyBlue : kPaleLast);
+      means.add(static_cast<long>(point.line), point.along_m, off_mm);
     }
     means.draw(chart, colour_of(end));
   }
   // For the eye: what a seam open by 1 deg would look like, on the side of the last lines.
   const auto& last = points[End::kLast];
-  const double side_m = last.empty() || last.front().first > 0.0 ? kSeamShown_m : -kSeamShown_m;
+  const double side_m = last.empty() || last.front().along_m > 0.0 ? kSeamShown_m : -kSeamShown_m;
   const double rise_mm = mm_from_m(kSeamShown_m) * std::tan(rad_from_deg(1.0));
   for (const double sign : {-1.0, 1.0}) chart.dashed(0.0, 0.0, side_m, sign * rise_mm, kGrey, 1);
 }
@@ -262,7 +272,7 @@ Outcome write_seam_chart(const std::string& path, const OrganisedCloud& cloud,
                          const PictureCaption& caption) {
   constexpr int kMapSide = 520;
   const double seam_rad = caption.phi_offset_rad.value_or(0.0) + kPi / 2;
-  Paper paper(kSheetWidth, 700);
+  Paper paper(kSheetWidth, 760);
   head(paper, "the seam", caption);
   paper.write_legend({{kBlue, "first quarter of the lines"},
                       {kVermillion, "last quarter"},
@@ -285,8 +295,8 @@ Outcome write_seam_chart(const std::string& path, const OrganisedCloud& cloud,
                   ? "seam_deg: not known"
                   : "seam_deg: the shaft turned " + with_decimals(said.further_deg, 3) + " +- " +
                         with_decimals(said.sigma_deg, 3) + " deg further than said",
-              {kSheetLeft + kMapSide + 100, 655}, 17, kBlack);
-  paper.write("dashed: a seam open by 1 deg", {kSheetLeft + kMapSide + 100, 682}, 17, kGrey);
+              {kSheetLeft + kMapSide + 100, 704}, 17, kBlack);
+  paper.write("dashed: a seam open by 1 deg", {kSheetLeft + kMapSide + 100, 732}, 17, kGrey);
   return paper.save(path);
 }
 
@@ -329,10 +339,9 @@ void draw_plate(Chart& chart, const PlateGeometry& plate, double beta_rad) {
 }
 
 void draw_beams(Chart& chart, const std::vector<PlateBeam>& beams) {
-  const int radius = beams.size() > 20'000 ? 1 : beams.size() > 4'000 ? 2 : 3;
-  for (const PlateBeam& beam : beams) {
-    chart.dot(mm_from_m(beam.x_m), mm_from_m(beam.y_m), beam.in_ring ? kBlue : kOrange, radius);
-  }
+  const int size = beams.size() > 20'000 ? 2 : beams.size() > 4'000 ? 3 : 5;
+  for (const PlateBeam& beam : beams)
+    chart.speck(mm_from_m(beam.x_m), mm_from_m(beam.y_m), beam.in_ring ? kBlue : kOrange, size);
 }
 
 }  // namespace

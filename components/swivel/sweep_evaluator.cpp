@@ -67,6 +67,7 @@ nlohmann::ordered_json SweepEvaluator::add(const ProcessedSweep& processed) {
   const std::vector<Surface> surfaces = find_surfaces(
       processed.cloud, rig_.axis_measured ? SurfaceKind::kAny : SurfaceKind::kUpright);
   evaluation_.sweeps.push_back(facts_of(processed, surfaces));
+  evaluation_.naive = evaluation_.naive || processed.sweep.action_sequence() == msg::SEQUENCE_NAIVE;
   evaluation_.alpha_calibrated = processed.attitude.calibrated();
   if (!rig_.axis_measured) evaluation_.alpha_deg = processed.attitude.alpha_deg();
   walls_.push_back(planes_of(surfaces));
@@ -98,6 +99,7 @@ void SweepEvaluator::draw(const ProcessedSweep& processed, const std::vector<Sur
     return *drawn_.insert(picture(kind, processed.index)).first;
   };
   must_be_written(write_surfaces_chart(path("surfaces"), surfaces, caption));
+  path("top_view");  // the output folder draws it
   if (rig_.axis_measured) return;
   must_be_written(write_seam_chart(path("seam"), processed.cloud, surfaces,
                                    {attitude.seam_deg(), attitude.seam_sigma_deg()}, caption));
@@ -121,7 +123,8 @@ void SweepEvaluator::judge_errors(const std::optional<AttitudeTruth>& truth) {
   if (rig_.axis_measured) return;
   std::vector<SweepAttitude> attitudes = evaluation_.attitudes();
   bool known = false;
-  for (std::size_t place = 0; truth && place < attitudes.size(); ++place) {
+  const bool by_start = truth && !evaluation_.naive;
+  for (std::size_t place = 0; by_start && place < attitudes.size(); ++place) {
     const auto start_deg = truth->phi_start_deg(attitudes[place].sweep, device_stamps_ms_[place]);
     if (start_deg) judge_by_start(rad_from_deg(*start_deg), attitudes[place]);
     known = known || start_deg;
@@ -154,55 +157,70 @@ std::vector<std::size_t> SweepEvaluator::sweeps_to_show() const {
 }
 
 std::vector<Figure> SweepEvaluator::figures_of_all() const {
-  std::vector<Figure> figures;
-  if (evaluation_.axis_measured || evaluation_.reference == Reference::kNone) return figures;
+  if (evaluation_.axis_measured || evaluation_.reference == Reference::kNone) return {};
   const auto attitudes = evaluation_.attitudes();
   const auto modes = by_mode(attitudes);
   const auto path = [&](const char* name) { return folder_ + "/" + name; };
   must_be_written(write_sweeps_chart(path("phi_error_sweeps.png"), title_, attitudes));
   must_be_written(write_modes_chart(path("phi_error_modes.png"), title_, modes));
   must_be_written(write_map_error_chart(path("map_error.png"), title_, modes));
-  figures.push_back(
-      {path("phi_error_sweeps.png"), "phi_error of every sweep (fig. 9 of the paper)",
+  return {
+      {"phi_error of every sweep (fig. 9 of the paper)",
        "Vermillion: the cloud as it comes, its sweep taken to begin at 0 deg. Blue: corrected by "
        "the plate. The nearer to 0, the better; below, the corrected ones alone, on their own "
-       "scale. Most bars, one sigma long either way, should reach the line at 0."});
-  figures.push_back({path("phi_error_modes.png"), "phi_error of every mode (fig. 10)",
-                     "From the least to the largest error of each mode, the ring at their mean. A "
-                     "short blue bar off 0 is an error that all sweeps share, as that of alpha."});
-  figures.push_back(
-      {path("map_error.png"), "Map error over distance (fig. 11)",
+       "scale. Two of three bars, one sigma long either way, should reach the line at 0.",
+       {{path("phi_error_sweeps.png"), ""}}},
+      {"phi_error of every mode (fig. 10)",
+       "From the least to the largest error of each mode, the ring at their mean. A short blue "
+       "bar off 0 is an error that all its sweeps share, as that of alpha.",
+       {{path("phi_error_modes.png"), ""}}},
+      {"Map error over distance (fig. 11)",
        "How far a point is off its place on the map, by its distance from the scanner. A blue "
-       "wedge that stays in the grey band up to 10 m keeps +-50 mm wherever the lidar reaches."});
-  return figures;
+       "wedge that stays in the grey band up to 10 m keeps +-50 mm wherever the lidar reaches.",
+       {{path("map_error.png"), ""}}}};
 }
 
-void SweepEvaluator::add_figures_of(std::size_t sweep, std::vector<Figure>& figures) const {
-  const SweepFacts& facts = evaluation_.sweeps[sweep];
-  const bool corrected = facts.attitude.corrected;
-  std::string name = fmt::format("sweep {}", sweep);
-  if (facts.attitude.mode != 0) name += fmt::format(", mode {}", facts.attitude.mode);
-  if (!corrected && !rig_.axis_measured) name += ", not corrected: " + facts.verdict;
-  const auto show = [&](const char* kind, const char* heading, const std::string& caption) {
-    const std::string path = picture(kind, sweep);
-    if (drawn_.count(path) > 0) figures.push_back({path, heading + (": " + name), caption});
+std::string SweepEvaluator::label_of(const SweepFacts& sweep) const {
+  std::string label = fmt::format("sweep {}", sweep.attitude.sweep);
+  if (sweep.attitude.mode != 0) label += fmt::format(", mode {}", sweep.attitude.mode);
+  if (rig_.axis_measured || sweep.attitude.corrected) return label;
+  return label + ", not corrected: " + sweep.verdict;
+}
+
+std::vector<Figure> SweepEvaluator::figures_of_sweeps() const {
+  const std::vector<std::size_t> shown = sweeps_to_show();
+  const auto pictures = [&](const char* kind) {
+    std::vector<Picture> found;
+    for (const std::size_t sweep : shown) {
+      const std::string path = picture(kind, sweep);
+      if (drawn_.count(path) > 0) found.push_back({path, label_of(evaluation_.sweeps[sweep])});
+    }
+    return found;
   };
-  show("top_view", "From above",
-       corrected ? "Vermillion as it came, blue after the correction. The walls should lie square "
-                   "to the axes if the rig stood square in the room."
-       : rig_.axis_measured ? "The cloud in the rig's base."
-                            : "The cloud as it came: its attitude is not known.");
-  show("surfaces", "Points off their fitted planes (fig. A2)",
-       "Left and middle: how far points lie off the plane, along it and up it; the black mean "
+  return {
+      {"Seen from above (fig. 8)",
+       rig_.axis_measured ? "The cloud in the rig's base."
+                          : "Vermillion: as it came; blue: corrected. If the rig stood square in "
+                            "a square room, the blue walls lie along the grid. Of each mode the "
+                            "sweep with the largest error is shown, here and below, and the "
+                            "first of each verdict other than good.",
+       pictures("top_view")},
+      {"Points off their fitted planes (fig. A2)",
+       "Left and middle: how far points lie off the plane, along it and up it; the black means "
        "should be straight and level. Right: their histogram; it should be as narrow as the "
-       "lidar's noise and look like the curve.");
-  show("seam", "The seam",
-       "Where the first lines (blue) and the last (vermillion) see the same wall from both sides. "
-       "Right: their distance from that wall, the first lines lying level; the last should go on "
-       "level. Rising or falling as the dashed lines they say that the seam is open by 1 deg.");
-  show("plate", "The plate",
+       "lidar's noise and look like the curve.",
+       pictures("surfaces")},
+      {"The seam",
+       "Where the first lines (blue) and the last (vermillion) see the same wall, one to the left "
+       "and one to the right of the seam. Right: their distance from that wall, drawn so that the "
+       "first lines lie level. If the seam is closed the last go on level; if it is open by 1 deg "
+       "they follow a dashed line.",
+       pictures("seam")},
+      {"The plate",
        "Every dot is a beam followed down to the plate's plane: blue if it measured a point "
-       "there, orange if it went past. The blue ones should fill the triangle, and no others.");
+       "there, orange if it measured elsewhere, since it went past or by its noise. The blue ones "
+       "should fill the triangle, with few outside of it.",
+       pictures("plate")}};
 }
 
 PageHead SweepEvaluator::page_head() const {
@@ -225,7 +243,7 @@ void SweepEvaluator::finish(const std::optional<AttitudeTruth>& truth, OutputFol
   judge_errors(truth);
   output.note("evaluation", evaluation_json(evaluation_));
   std::vector<Figure> figures = figures_of_all();
-  for (const std::size_t sweep : sweeps_to_show()) add_figures_of(sweep, figures);
+  for (Figure& figure : figures_of_sweeps()) figures.push_back(std::move(figure));
   write_text_file(folder_ + "/report.html", report_page(page_head(), evaluation_, figures));
 }
 

@@ -37,7 +37,8 @@ class SweepEvaluator {
   std::string picture(const std::string& kind, std::size_t sweep) const;
   std::vector<std::size_t> sweeps_to_show() const;
   std::vector<Figure> figures_of_all() const;
-  void add_figures_of(std::size_t sweep, std::vector<Figure>& figures) const;
+  std::vector<Figure> figures_of_sweeps() const;
+  std::string label_of(const SweepFacts& sweep) const;
   PageHead page_head() const;
 
   std::string folder_;
