@@ -112,9 +112,12 @@ Outcome write_sweeps_chart(const std::string& path, const std::string& title,
   const std::vector<double> with_sigmas = ends_of_sigmas_deg(sweeps);
   const Span across{-0.6, static_cast<double>(sweeps.size()) - 0.4};
 
+  std::vector<LegendEntry> legend{{kVermillion, "without correction"}, {kBlue, "with correction"}};
+  const auto refused = [](const SweepAttitude& sweep) { return !sweep.corrected; };
+  if (std::any_of(sweeps.begin(), sweeps.end(), refused))
+    legend.push_back({kGrey, "cross: no attitude, not corrected"});
   Paper paper(kWidth, 800);
-  begin(paper, title,
-        {{kVermillion, "without correction"}, {kBlue, "with correction"}, {kGrey, "no attitude"}});
+  begin(paper, title, legend);
   Chart whole(paper, {kLeft, 120, kWidth - kLeft - 40, 260}, across, span_of_errors(both, 0.5));
   whole.draw_axes("", "phi_error, deg");
   whole.line(across.lowest, 0.0, across.highest, 0.0, kGrey, 1);

@@ -188,6 +188,10 @@ void find_remarks(const Evaluation& evaluation, Findings& findings) {
 
 void find_what_is_not_told(const Evaluation& evaluation, const std::vector<ModeEvaluation>& modes,
                            Findings& findings) {
+  if (evaluation.naive)
+    note(findings,
+         "Lidar and motor were started together (naive): where such a sweep began says "
+         "little of its cloud, which is bent. So phi_error is by the walls here.");
   if (evaluation.reference == Reference::kOtherSweeps)
     note(findings,
          "phi_error is against the median of all "

@@ -48,7 +48,7 @@ class Means {
       if (before != nullptr && group - group_before <= 2)
         chart.line(before->place / before->count, before->value / before->count,
                    sum.place / sum.count, sum.value / sum.count, colour, 3);
-      chart.dot(sum.place / sum.count, sum.value / sum.count, colour, 3);
+      chart.dot(sum.place / sum.count, sum.value / sum.count, colour, 2);
       before = &sum;
       group_before = group;
     }
@@ -81,7 +81,7 @@ Span extent_of(const Surface& surface, Place place) {
 
 constexpr double kShownOff_mm = 80.0;
 
-enum class MeanOf { kLine, kHeight };
+enum class MeanOf { kLine, kPlace };
 
 // Points off the plane over a place on it; dark the mean of each scan line, or of each 0.1 m.
 void draw_profile(Chart& chart, const Surface& surface, Place place, MeanOf mean_of,
@@ -135,6 +135,11 @@ void draw_histogram(Paper& paper, const cv::Rect& area, const Surface& surface) 
     chart.dashed(bound_mm, 0.0, bound_mm, 1.2 * most, kGrey, 1);
 }
 
+// A floor or a ceiling: a scan line crosses it, and says nothing as a mean.
+bool level(const Surface& surface) {
+  return std::abs(surface.plane.normal.z()) > 0.5;
+}
+
 std::string surface_words(const Surface& surface) {
   const Eigen::Vector3d& n = surface.plane.normal;
   return surface.name + ": " + std::to_string(surface.points.size()) + " points, sd " +
@@ -164,11 +169,11 @@ Outcome write_surfaces_chart(const std::string& path, const std::vector<Surface>
     const cv::Rect first(kSheetLeft, top + 64, 420, 160);
     Chart along(paper, first, extent_of(surface, &SurfacePoint::along_m),
                 {-kShownOff_mm, kShownOff_mm});
-    draw_profile(along, surface, &SurfacePoint::along_m, MeanOf::kLine,
-                 "along it, m (to the left)");
+    draw_profile(along, surface, &SurfacePoint::along_m,
+                 level(surface) ? MeanOf::kPlace : MeanOf::kLine, "along it, m (to the left)");
     Chart up(paper, first + cv::Point(500, 0) - cv::Size(180, 0),
              extent_of(surface, &SurfacePoint::up_m), {-kShownOff_mm, kShownOff_mm});
-    draw_profile(up, surface, &SurfacePoint::up_m, MeanOf::kHeight, "up it, m");
+    draw_profile(up, surface, &SurfacePoint::up_m, MeanOf::kPlace, "up it, m");
     draw_histogram(paper, {first.x + 820, first.y, 270, 160}, surface);
   }
   if (count == 0) paper.write("no plane was found", {kSheetLeft, 220}, 20, kBlack);

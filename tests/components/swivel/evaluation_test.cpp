@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr double kNoise_m = 0.012;
 
-// A room of four walls, square to the axes, with a floor: 2.1 m to the right, 3.4 m ahead, ...
+// A room of four walls, square to the axes, with a floor that is seen more: 2.1 m to the right, 3.4
+// m ahead, ...
 OrganisedCloud room() {
   OrganisedCloud cloud(200, 400);
   std::mt19937 random(4);
@@ -28,7 +30,7 @@ OrganisedCloud room() {
                                       {x, 2.4 + noise(random), z},
                                       {-2.6 + noise(random), y, z},
                                       {x, y, -0.95 + noise(random)}};
-    const Eigen::Vector3f point = points[random() % 5].cast<float>();
+    const Eigen::Vector3f point = points[std::min<std::size_t>(random() % 6, 4)].cast<float>();
     measured = {point.x(), point.y(), point.z(), 1.0F};
   }
   return cloud;
@@ -148,7 +150,7 @@ TEST(Surfaces, HaveTheSpreadOfTheirNoiseAndTheirPlaceInTheRoom) {
   for (const Surface& surface : surfaces) {
     EXPECT_NEAR(surface.sd_m, kNoise_m, 0.0005) << surface.name;
     EXPECT_NEAR(surface.share_within, std::erf(0.040 / kNoise_m / std::sqrt(2.0)), 0.001);
-    EXPECT_GT(surface.points.size(), 12'000U);
+    EXPECT_GT(surface.points.size(), 10'000U);
   }
   const auto any = find_surfaces(room(), SurfaceKind::kAny);
   EXPECT_TRUE(std::any_of(any.begin(), any.end(), [](const auto& s) { return s.name == "floor"; }));
