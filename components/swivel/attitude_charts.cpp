@@ -88,6 +88,7 @@ void draw_sigmas(Chart& chart, const std::vector<SweepAttitude>& attitudes) {
 
 std::vector<double> errors_deg(const std::vector<SweepAttitude>& attitudes, Error error) {
   std::vector<double> errors;
+  errors.reserve(attitudes.size());
   for (const SweepAttitude& attitude : attitudes) errors.push_back(deg_from_rad(attitude.*error));
   return errors;
 }

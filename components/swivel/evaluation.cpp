@@ -96,6 +96,7 @@ std::optional<double> turned_against_rad(const std::vector<Plane>& walls,
 
 std::optional<double> turned_from_square_rad(const std::vector<Plane>& walls, double room_yaw_rad) {
   std::vector<double> turns_rad;
+  turns_rad.reserve(walls.size());
   for (const Plane& wall : walls)
     turns_rad.push_back(std::remainder(wall.azimuth_rad() - room_yaw_rad, kPi / 2));
   if (turns_rad.size() < 2) return std::nullopt;
@@ -165,6 +166,7 @@ std::vector<ModeEvaluation> by_mode(const std::vector<SweepAttitude>& attitudes)
     errors[attitude.mode].second.push_back(attitude.with_rad);
   }
   std::vector<ModeEvaluation> modes;
+  modes.reserve(errors.size());
   for (const auto& [mode, both] : errors) {
     modes.push_back(
         {mode, both.first.size(), statistics_of(both.first), statistics_of(both.second)});

@@ -166,8 +166,11 @@ Outcome write_top_view(const std::string& path, const OrganisedCloud* before,
     legend.push_back({kVermillion, "before correction"});
   }
   if (caption.phi_offset_rad) draw_seam(sheet, *caption.phi_offset_rad);
-  draw_points(sheet, after, band, kBlue);
-  legend.push_back({kBlue, before != nullptr ? "after correction" : "axis measured"});
+  const Colour& colour = caption.uncorrected ? kVermillion : kBlue;
+  draw_points(sheet, after, band, colour);
+  legend.push_back({colour, caption.uncorrected ? "not corrected: attitude not known"
+                            : before != nullptr ? "after correction"
+                                                : "axis measured"});
   if (caption.phi_offset_rad) legend.push_back({kOrange, "seam: the sweep begins and ends here"});
   draw_axes(sheet, caption.frame, kBlack);
   draw_scale_bar(sheet, kBlack);

@@ -151,6 +151,7 @@ std::vector<std::size_t> SweepEvaluator::sweeps_to_show() const {
       of_mode = &sweep;
   }
   std::vector<std::size_t> shown;
+  shown.reserve(worst.size() + refused.size());
   for (const auto& [mode, sweep] : worst) shown.push_back(sweep->attitude.sweep);
   for (const auto& [verdict, sweep] : refused) shown.push_back(sweep);
   return shown;
