@@ -137,12 +137,12 @@ void SweepEvaluator::judge_errors(const std::optional<AttitudeTruth>& truth) {
 }
 
 // Of each mode the sweep with the largest error, and the first of each verdict that is not good.
-std::vector<std::size_t> SweepEvaluator::sweeps_to_show() const {
+std::vector<const SweepFacts*> SweepEvaluator::sweeps_to_show() const {
   std::map<int, const SweepFacts*> worst;
-  std::map<std::string, std::size_t> refused;
+  std::map<std::string, const SweepFacts*> refused;
   for (const SweepFacts& sweep : evaluation_.sweeps) {
     if (!sweep.attitude.corrected && !rig_.axis_measured) {
-      refused.emplace(sweep.verdict, sweep.attitude.sweep);
+      refused.emplace(sweep.verdict, &sweep);
       continue;
     }
     const SweepFacts*& of_mode = worst[sweep.attitude.mode];
@@ -150,9 +150,9 @@ std::vector<std::size_t> SweepEvaluator::sweeps_to_show() const {
         std::abs(sweep.attitude.with_rad) > std::abs(of_mode->attitude.with_rad))
       of_mode = &sweep;
   }
-  std::vector<std::size_t> shown;
+  std::vector<const SweepFacts*> shown;
   shown.reserve(worst.size() + refused.size());
-  for (const auto& [mode, sweep] : worst) shown.push_back(sweep->attitude.sweep);
+  for (const auto& [mode, sweep] : worst) shown.push_back(sweep);
   for (const auto& [verdict, sweep] : refused) shown.push_back(sweep);
   return shown;
 }
@@ -189,12 +189,12 @@ std::string SweepEvaluator::label_of(const SweepFacts& sweep) const {
 }
 
 std::vector<Figure> SweepEvaluator::figures_of_sweeps() const {
-  const std::vector<std::size_t> shown = sweeps_to_show();
+  const std::vector<const SweepFacts*> shown = sweeps_to_show();
   const auto pictures = [&](const char* kind) {
     std::vector<Picture> found;
-    for (const std::size_t sweep : shown) {
-      const std::string path = picture(kind, sweep);
-      if (drawn_.count(path) > 0) found.push_back({path, label_of(evaluation_.sweeps[sweep])});
+    for (const SweepFacts* sweep : shown) {
+      const std::string path = picture(kind, sweep->attitude.sweep);
+      if (drawn_.count(path) > 0) found.push_back({path, label_of(*sweep)});
     }
     return found;
   };

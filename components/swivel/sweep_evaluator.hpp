@@ -35,7 +35,7 @@ class SweepEvaluator {
   void draw_plate(const ProcessedSweep& processed, const PictureCaption& caption);
   void judge_errors(const std::optional<AttitudeTruth>& truth);
   std::string picture(const std::string& kind, std::size_t sweep) const;
-  std::vector<std::size_t> sweeps_to_show() const;
+  std::vector<const SweepFacts*> sweeps_to_show() const;
   std::vector<Figure> figures_of_all() const;
   std::vector<Figure> figures_of_sweeps() const;
   std::string label_of(const SweepFacts& sweep) const;
