@@ -96,6 +96,7 @@ void OutputFolder::write_pictures(const ProcessedSweep& processed,
   caption.sweep = processed.index;
   caption.mode = processed.attitude.mode();
   caption.verdict = verdict_word(processed.attitude.verdict());
+  caption.uncorrected = !Corrector::in_base(processed.attitude.verdict());
   caption.frame = measured_ ? "base" : corrected ? "O" : "O'";
   if (corrected) caption.phi_offset_rad = rad_from_deg(processed.attitude.phi_offset_deg());
   const std::string top_view = path("top_view", processed.index, ".png");

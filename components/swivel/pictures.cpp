@@ -2,24 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iomanip>
-#include <opencv2/freetype.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <vector>
 
 #include "calibration/units.hpp"
 #include "components/swivel/map_frame.hpp"
+#include "components/swivel/paper.hpp"
 
 namespace swivel {
 namespace {
-
-using Colour = cv::Scalar;  // blue, green, red
-
-const Colour kWhite(255, 255, 255), kBlack(0, 0, 0), kGrey(110, 110, 110), kFaint(228, 228, 228);
-const Colour kVermillion(0, 94, 213), kBlue(178, 114, 0), kOrange(0, 159, 230);
 
 // The map's place on the paper.
 constexpr int kMapSize = 1080;
@@ -27,72 +18,27 @@ constexpr int kMapLeft = 80;
 constexpr int kMapTop = 80;
 const cv::Rect kMapArea(kMapLeft, kMapTop, kMapSize, kMapSize);
 
-// DejaVu and Liberation as Debian, Fedora and Arch place them.
-const char* const kFonts[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                              "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
-                              "/usr/share/fonts/TTF/DejaVuSans.ttf",
-                              "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
-
-std::string in_words(double value, int decimals) {
-  std::ostringstream words;
-  words << std::fixed << std::setprecision(decimals) << value;
-  return words.str();
-}
-
-// White paper with a map area, and the means to draw on it.
-class Sheet {
+// Paper with a map area.
+class Sheet : public Paper {
  public:
   Sheet(const MapFrame& frame, const Colour& ground)
-      : paper_(kPictureHeight_pixels, kPictureWidth_pixels, CV_8UC3, kWhite),
-        map_(paper_(kMapArea)),
+      : Paper(kPictureWidth_pixels, kPictureHeight_pixels),
+        map_(pixels()(kMapArea)),
         frame_(frame) {
     map_ = ground;
-    for (const char* font : kFonts) {
-      if (!std::filesystem::exists(font)) continue;
-      letters_ = cv::freetype::createFreeType2();
-      letters_->loadFontData(font, 0);
-      break;
-    }
   }
 
   cv::Mat& map() { return map_; }
-  cv::Mat& paper() { return paper_; }
   const MapFrame& frame() const { return frame_; }
-
-  // Without a font file OpenCV's own strokes must do.
-  void write(const std::string& text, cv::Point left_base, int size, const Colour& colour) {
-    if (letters_) {
-      letters_->putText(paper_, text, left_base, size, colour, cv::FILLED, cv::LINE_AA, true);
-    } else {
-      cv::putText(paper_, text, left_base, cv::FONT_HERSHEY_SIMPLEX, size / 30.0, colour, 1,
-                  cv::LINE_AA);
-    }
-  }
-
-  int width_of(const std::string& text, int size) {
-    int below = 0;
-    if (letters_) return letters_->getTextSize(text, size, cv::FILLED, &below).width;
-    return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, size / 30.0, 1, &below).width;
-  }
 
   cv::Point on_paper(double x_m, double y_m) const {
     return {kMapLeft + static_cast<int>(std::lround(frame_.column_of(x_m))),
             kMapTop + static_cast<int>(std::lround(frame_.row_of(y_m)))};
   }
 
-  Outcome save(const std::string& path) const {
-    try {
-      if (cv::imwrite(path, paper_)) return Done{};
-    } catch (const cv::Exception&) {  // the same failure, said in another way
-    }
-    return Failure{path + ": cannot be written; is the folder there, and the disk not full?"};
-  }
-
  private:
-  cv::Mat paper_;
   cv::Mat map_;
   MapFrame frame_;
-  cv::Ptr<cv::freetype::FreeType2> letters_;
 };
 
 double grid_step_m(const MapFrame& frame) {
@@ -108,7 +54,7 @@ void for_each_grid_line(double lowest_m, double highest_m, double step_m, Draw d
   const auto last = static_cast<long>(std::floor(highest_m / step_m));
   for (auto line = static_cast<long>(std::ceil(lowest_m / step_m)); line <= last; ++line) {
     const double place_m = static_cast<double>(line) * step_m;
-    draw(place_m, in_words(place_m, step_m < 1.0 ? 1 : 0));
+    draw(place_m, with_decimals(place_m, step_m < 1.0 ? 1 : 0));
   }
 }
 
@@ -117,13 +63,13 @@ void draw_grid(Sheet& sheet, const Colour& colour) {
   const double step_m = grid_step_m(frame);
   for_each_grid_line(frame.left_m(), frame.right_m(), step_m, [&](double x_m, const auto& label) {
     const int column = sheet.on_paper(x_m, 0.0).x;
-    cv::line(sheet.paper(), {column, kMapTop}, {column, kMapTop + kMapSize - 1}, colour);
+    cv::line(sheet.pixels(), {column, kMapTop}, {column, kMapTop + kMapSize - 1}, colour);
     sheet.write(label, {column - sheet.width_of(label, 18) / 2, kMapTop + kMapSize + 24}, 18,
                 kGrey);
   });
   for_each_grid_line(frame.bottom_m(), frame.top_m(), step_m, [&](double y_m, const auto& label) {
     const int row = sheet.on_paper(0.0, y_m).y;
-    cv::line(sheet.paper(), {kMapLeft, row}, {kMapLeft + kMapSize - 1, row}, colour);
+    cv::line(sheet.pixels(), {kMapLeft, row}, {kMapLeft + kMapSize - 1, row}, colour);
     sheet.write(label, {kMapLeft - 10 - sheet.width_of(label, 18), row + 6}, 18, kGrey);
   });
 }
@@ -142,11 +88,11 @@ void draw_points(Sheet& sheet, const OrganisedCloud& cloud, const HeightBand& ba
 void draw_axes(Sheet& sheet, const std::string& name, const Colour& colour) {
   const cv::Point origin = sheet.on_paper(0.0, 0.0);
   constexpr int kLength = 70;
-  cv::arrowedLine(sheet.paper(), origin, origin + cv::Point(kLength, 0), colour, 2, cv::LINE_AA, 0,
+  cv::arrowedLine(sheet.pixels(), origin, origin + cv::Point(kLength, 0), colour, 2, cv::LINE_AA, 0,
                   0.2);
-  cv::arrowedLine(sheet.paper(), origin, origin - cv::Point(0, kLength), colour, 2, cv::LINE_AA, 0,
+  cv::arrowedLine(sheet.pixels(), origin, origin - cv::Point(0, kLength), colour, 2, cv::LINE_AA, 0,
                   0.2);
-  cv::circle(sheet.paper(), origin, 5, colour, cv::FILLED, cv::LINE_AA);
+  cv::circle(sheet.pixels(), origin, 5, colour, cv::FILLED, cv::LINE_AA);
   sheet.write("X", origin + cv::Point(kLength + 6, 7), 20, colour);
   sheet.write("Y", origin + cv::Point(-7, -kLength - 8), 20, colour);
   sheet.write(name, origin + cv::Point(10, 26), 20, colour);
@@ -157,10 +103,10 @@ void draw_scale_bar(Sheet& sheet, const Colour& colour) {
   const int length = static_cast<int>(std::lround(length_m * sheet.frame().pixels_per_m()));
   const cv::Point right(kMapLeft + kMapSize - 24, kMapTop + kMapSize - 24);
   const cv::Point left = right - cv::Point(length, 0);
-  cv::line(sheet.paper(), left, right, colour, 4);
+  cv::line(sheet.pixels(), left, right, colour, 4);
   for (const cv::Point& end : {left, right})
-    cv::line(sheet.paper(), end - cv::Point(0, 8), end + cv::Point(0, 8), colour, 2);
-  const std::string label = in_words(length_m, length_m < 1.0 ? 1 : 0) + " m";
+    cv::line(sheet.pixels(), end - cv::Point(0, 8), end + cv::Point(0, 8), colour, 2);
+  const std::string label = with_decimals(length_m, length_m < 1.0 ? 1 : 0) + " m";
   sheet.write(label, left + cv::Point((length - sheet.width_of(label, 20)) / 2, -14), 20, colour);
 }
 
@@ -170,25 +116,11 @@ void draw_seam(Sheet& sheet, double phi_offset_rad) {
   const double x_m = -std::sin(phi_offset_rad) * far_m, y_m = std::cos(phi_offset_rad) * far_m;
   cv::Point start = sheet.on_paper(x_m, y_m), end = sheet.on_paper(-x_m, -y_m);
   if (!cv::clipLine(kMapArea, start, end)) return;
-  cv::line(sheet.paper(), start, end, kOrange, 5, cv::LINE_AA);
-}
-
-struct LegendEntry {
-  Colour colour;
-  std::string words;
-};
-
-void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
-  int column = kMapLeft;
-  for (const LegendEntry& entry : entries) {
-    cv::rectangle(sheet.paper(), {column, 50, 18, 18}, entry.colour, cv::FILLED);
-    sheet.write(entry.words, {column + 26, 66}, 19, kBlack);
-    column += 26 + sheet.width_of(entry.words, 19) + 36;
-  }
+  cv::line(sheet.pixels(), start, end, kOrange, 5, cv::LINE_AA);
 }
 
 std::string heights_in_words(const HeightBand& band) {
-  const auto metres = [](float m) { return in_words(static_cast<double>(m), 2) + " m"; };
+  const auto metres = [](float m) { return with_decimals(static_cast<double>(m), 2) + " m"; };
   const bool floor = !std::isinf(band.lowest_m), ceiling = !std::isinf(band.highest_m);
   if (floor && ceiling) return metres(band.lowest_m) + " to " + metres(band.highest_m);
   if (floor) return "above " + metres(band.lowest_m);
@@ -209,7 +141,7 @@ void draw_caption(Sheet& sheet, const OrganisedCloud& cloud, const HeightBand& b
                               std::to_string(shown) + " points shown";
   std::string turn = "swivel " SWIVEL_VERSION;
   if (caption.phi_offset_rad) {
-    turn += "   phi_offset " + in_words(deg_from_rad(*caption.phi_offset_rad), 3) + " deg" +
+    turn += "   phi_offset " + with_decimals(deg_from_rad(*caption.phi_offset_rad), 3) + " deg" +
             ", positive counter-clockwise seen from above (turns " + caption.frame + "' into " +
             caption.frame + ")";
   }
@@ -234,12 +166,15 @@ Outcome write_top_view(const std::string& path, const OrganisedCloud* before,
     legend.push_back({kVermillion, "before correction"});
   }
   if (caption.phi_offset_rad) draw_seam(sheet, *caption.phi_offset_rad);
-  draw_points(sheet, after, band, kBlue);
-  legend.push_back({kBlue, before != nullptr ? "after correction" : "axis measured"});
+  const Colour& colour = caption.uncorrected ? kVermillion : kBlue;
+  draw_points(sheet, after, band, colour);
+  legend.push_back({colour, caption.uncorrected ? "not corrected: attitude not known"
+                            : before != nullptr ? "after correction"
+                                                : "axis measured"});
   if (caption.phi_offset_rad) legend.push_back({kOrange, "seam: the sweep begins and ends here"});
   draw_axes(sheet, caption.frame, kBlack);
   draw_scale_bar(sheet, kBlack);
-  draw_legend(sheet, legend);
+  sheet.write_legend(legend, {kMapLeft, 66});
   draw_caption(sheet, after, band, caption);
   return sheet.save(path);
 }
@@ -275,9 +210,9 @@ void draw_colour_bar(Sheet& sheet, double most) {
     counts.at<float>(0, place) = static_cast<float>(std::expm1(place * std::log1p(most) / kLength));
   cv::Mat bar;
   cv::resize(in_cividis(counts, most), bar, {kLength, 18}, 0, 0, cv::INTER_NEAREST);
-  bar.copyTo(sheet.paper()(cv::Rect(kMapLeft, 48, kLength, 18)));
-  const std::string words = "0 to " + in_words(most, 0) + " points a cell of " +
-                            in_words(1e3 * kCell / sheet.frame().pixels_per_m(), 0) + " mm" +
+  bar.copyTo(sheet.pixels()(cv::Rect(kMapLeft, 48, kLength, 18)));
+  const std::string words = "0 to " + with_decimals(most, 0) + " points a cell of " +
+                            with_decimals(1e3 * kCell / sheet.frame().pixels_per_m(), 0) + " mm" +
                             ", logarithmic";
   sheet.write(words, {kMapLeft + kLength + 16, 64}, 19, kBlack);
 }

@@ -20,10 +20,12 @@ struct PictureCaption {
   int mode = 0;                          // 0: none of the seven
   std::string verdict;                   // in words
   std::optional<double> phi_offset_rad;  // where known: counter-clockwise seen from above
+  bool uncorrected = false;              // the attitude is not known: the cloud is as it came
 };
 
 // before: the cloud as assembled, in frame O' (vermillion); after: the corrected one (blue).
-// A rig that measures its axis has no `before`. The seam, where the sweep began and ended, is
+// A rig that measures its axis has no `before`; a cloud that is not corrected has none either, and
+// is vermillion itself. The seam, where the sweep began and ended, is
 // drawn where phi_offset is known.
 Outcome write_top_view(const std::string& path, const OrganisedCloud* before,
                        const OrganisedCloud& after, const PictureCaption& caption);

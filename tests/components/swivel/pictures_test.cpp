@@ -83,6 +83,17 @@ TEST(TopView, ShowsBeforeAfterAndTheSeamOnItsOwnSide) {
   EXPECT_TRUE(holds(picture, kOrange, {0.50, 0.1, 0.1, 0.01}));
 }
 
+TEST(TopView, DrawsACloudWithoutAttitudeNeverAsCorrected) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("view.png");
+  PictureCaption refused = caption(std::nullopt);
+  refused.uncorrected = true;
+  ASSERT_TRUE(write_top_view(path, nullptr, square(0.0F), refused));
+  const cv::Mat picture = cv::imread(path);
+  EXPECT_GT(count(picture, kVermillion), 3000);
+  EXPECT_EQ(count(picture, kBlue), 0);
+}
+
 TEST(DensityView, IsBrightWhereThePointsAre) {
   const ScratchFolder scratch;
   const std::string path = scratch.file("density.png");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "calibration/units.hpp"
 #include "scratch_folder.hpp"
 
 namespace swivel {
@@ -139,6 +140,80 @@ TEST(Process, ACalibrationMovesTheAttitudeByItsAlpha) {
   EXPECT_NEAR(std::stod(calibrated[1][3]) - std::stod(drawn[1][3]), -0.5, 1e-5);
 }
 
+TEST(Report, JudgesACaseAgainstItsTruthOnAPageOfItsOwn) {
+  const ScratchFolder scratch;
+  const std::string folder = scratch.file("out_dir");
+  const Ended ended = run(scratch, "report " + recording("plate_period") + " -o " + folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(content_of(folder + "/report.json"));
+  const auto& evaluation = report["evaluation"];
+  auto truth = truth_of("plate_period");
+  EXPECT_EQ(evaluation["verdicts"]["good"], 2);
+  EXPECT_NEAR(evaluation["true_alpha_deg"], truth["alpha_deg"], 1e-6);
+  double largest_deg = 0.0;
+  for (std::size_t sweep = 0; sweep < 2; ++sweep) {
+    const double start_deg = truth["sweep" + std::to_string(sweep) + "_phi_start_deg"];
+    const double offset_deg = report["sweeps"][sweep]["phi_offset_deg"];
+    const auto& errors = evaluation["sweeps"][sweep];
+    EXPECT_NEAR(errors["phi_error_without_correction_deg"], start_deg, 1e-6);
+    EXPECT_NEAR(errors["phi_error_with_correction_deg"], start_deg - offset_deg, 1e-6);
+    largest_deg = std::max(largest_deg, std::abs(start_deg - offset_deg));
+    for (const auto& surface : report["sweeps"][sweep]["surfaces"]) {
+      EXPECT_LT(surface["sd_mm"], 20.0);
+      EXPECT_GT(surface["within_40_mm_percent"], 95.0);
+    }
+  }
+  const auto& mode = evaluation["modes"][0];
+  EXPECT_NEAR(mode["map_error_mm_at_0_to_10_m"][4], 4000.0 * std::tan(largest_deg * kPi / 180.0),
+              1e-3);
+  const std::string page = content_of(folder + "/report.html");
+  for (const char* name : {"phi_error_sweeps.png", "phi_error_modes.png", "map_error.png"})
+    EXPECT_GT(std::filesystem::file_size(folder + "/" + name), 5000U) << name;
+  for (const char* name : {"surfaces_00.png", "seam_01.png", "plate_01.png", "top_view_00.png"})
+    EXPECT_GT(std::filesystem::file_size(folder + "/" + name), 10000U) << name;
+  std::size_t pictures = 0;
+  for (auto at = page.find("data:image/png"); at != std::string::npos;
+       at = page.find("data:image/png", at + 1))
+    ++pictures;
+  EXPECT_EQ(pictures, 7U) << "three of all sweeps, four of the worst of mode 1";
+}
+
+TEST(Report, WithoutATruthJudgesByTheWallsAndSaysSo) {
+  const ScratchFolder scratch;
+  const std::string copy = scratch.file("case");
+  std::filesystem::copy(recording("plate_period"), copy);
+  std::filesystem::remove(copy + "/truth.csv");
+  const Ended ended = run(scratch, "report " + copy + " -o " + scratch.file("out_dir"));
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(content_of(scratch.file("out_dir/report.json")));
+  const auto& evaluation = report["evaluation"];
+  EXPECT_THAT(evaluation["phi_error_is_against"].get<std::string>(), HasSubstr("median"));
+  auto truth = truth_of("plate_period");
+  std::vector<double> by_walls, by_truth;
+  for (std::size_t sweep = 0; sweep < 2; ++sweep) {
+    by_walls.push_back(evaluation["sweeps"][sweep]["phi_error_with_correction_deg"]);
+    by_truth.push_back(truth["sweep" + std::to_string(sweep) + "_phi_start_deg"] -
+                       report["sweeps"][sweep]["phi_offset_deg"].get<double>());
+  }
+  EXPECT_NEAR(by_walls[0] - by_walls[1], by_truth[0] - by_truth[1], 0.05);
+}
+
+TEST(Report, OfAMeasuredAxisHasItsSurfacesAndNoPhiError) {
+  const ScratchFolder scratch;
+  const Ended ended =
+      run(scratch, "report " + recording("tilting_room_turning.csv.gz") + " -o " + scratch.path());
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(content_of(scratch.file("report.json")));
+  EXPECT_TRUE(report["evaluation"]["axis_measured"]);
+  EXPECT_FALSE(report["evaluation"].contains("modes"));
+  EXPECT_EQ(report["evaluation"]["verdicts"]["measured"], 2);
+  EXPECT_FALSE(report["sweeps"][0]["surfaces"].empty());
+  const std::string page = content_of(scratch.file("report.html"));
+  EXPECT_THAT(page, HasSubstr("has no plate and nothing to correct"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("fig. 9")));
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("plate_00.png")));
+}
+
 struct Refusal {
   std::string arguments;
   int code;
@@ -159,6 +234,10 @@ TEST(Refusals, EndWithTheirCodeAndOneLineThatSaysWhatToDo) {
            {"process " + recording("pan_sparse") + out + " --rig /nowhere.yaml", 78, "nowhere"},
            {"process " + recording("pan_sparse") + " -o " + scratch.file("in_the_way/out"), 73,
             "in_the_way"},
+           {"report /nowhere" + out, 66, "/nowhere"},
+           {"report " + recording("corridor.csv.gz") + out, 65, "no axis angle"},
+           {"report " + recording("plate_period") + out + " --truth /nowhere.csv", 66, "nowhere"},
+           {"report live --calibration x.yaml" + out, 64, "live"},
            {"calibrate alpha " + recording("pan_sparse") + out, 78, "plate"},
            {"calibrate alpha " + recording("plate_period") + out, 65, "sweeps"}}) {
     const Ended ended = run(scratch, refusal.arguments);
@@ -170,8 +249,8 @@ TEST(Refusals, EndWithTheirCodeAndOneLineThatSaysWhatToDo) {
 
 TEST(Refusals, WrongUsageIs64) {
   const ScratchFolder scratch;
-  for (const char* arguments : {"", "fly", "process", "process x", "process x -o y --fly",
-                                "calibrate", "calibrate beta x -o y"})
+  for (const char* arguments : {"", "fly", "process", "process x", "process x -o y --fly", "report",
+                                "report x", "calibrate", "calibrate beta x -o y"})
     EXPECT_EQ(run(scratch, arguments).code, 64) << arguments;
   EXPECT_EQ(run(scratch, "--help").code, 0);
   EXPECT_THAT(run(scratch, "--version").out, HasSubstr("swivel "));
