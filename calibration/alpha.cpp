@@ -155,7 +155,7 @@ void measure_errors(const Views& views, const WallAngles& angles, const RoomWall
   double count = 0.0;
   for (const SweepView& view : views) {
     count += static_cast<double>(view.sightings.size());
-    for (const Sighting& sighting : view.sightings) {
+    for (const WallSighting& sighting : view.sightings) {
       squares += std::pow(sighting.error_rad + moved_rad, 2);
     }
   }

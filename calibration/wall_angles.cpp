@@ -34,7 +34,7 @@ Eigen::MatrixXd covariance_of(const SweepView& view) {
 Eigen::VectorXd normal_variances(const Views& views, std::size_t walls) {
   Eigen::VectorXd information = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(walls));
   for (const SweepView& view : views) {
-    for (const Sighting& sighting : view.sightings) {
+    for (const WallSighting& sighting : view.sightings) {
       information(static_cast<Eigen::Index>(sighting.wall)) += 1.0 / sighting.variance;
     }
   }
@@ -52,7 +52,7 @@ WallAngles fit_angles(const Views& views, std::size_t walls) {
       const auto wall =
           static_cast<Eigen::Index>(view.sightings[static_cast<std::size_t>(row)].wall);
       for (Eigen::Index column = 0; column < weights.cols(); ++column) {
-        const Sighting& other = view.sightings[static_cast<std::size_t>(column)];
+        const WallSighting& other = view.sightings[static_cast<std::size_t>(column)];
         information(wall, static_cast<Eigen::Index>(other.wall)) += weights(row, column);
         pull(wall) += weights(row, column) * other.error_rad;
       }
@@ -62,24 +62,24 @@ WallAngles fit_angles(const Views& views, std::size_t walls) {
   return {covariance * pull, covariance, normal_variances(views, walls)};
 }
 
-double off_rad(const Sighting& sighting, const WallAngles& angles) {
+double off_rad(const WallSighting& sighting, const WallAngles& angles) {
   return sighting.error_rad - angles.error_rad(static_cast<Eigen::Index>(sighting.wall));
 }
 
 Common common_of(const SweepView& view, const WallAngles& angles) {
   double weights = 0.0;
   double sum = 0.0;
-  for (const Sighting& sighting : view.sightings) {
+  for (const WallSighting& sighting : view.sightings) {
     weights += 1.0 / sighting.variance;
     sum += off_rad(sighting, angles) / sighting.variance;
   }
   return {sum / weights, view.beta_variance + 1.0 / weights};
 }
 
-std::size_t sightings_of(const Views& views, std::size_t wall) {
+std::size_t sightings_of_wall(const Views& views, std::size_t wall) {
   std::size_t count = 0;
   for (const SweepView& view : views) {
-    for (const Sighting& sighting : view.sightings) count += sighting.wall == wall ? 1 : 0;
+    for (const WallSighting& sighting : view.sightings) count += sighting.wall == wall ? 1 : 0;
   }
   return count;
 }
@@ -94,11 +94,11 @@ bool take_out_worst(Views& views, const WallAngles& angles, const RoomWalls& roo
   for (SweepView& view : views) {
     const double common_rad = common_of(view, angles).error_rad;
     for (std::size_t index = 0; index < view.sightings.size(); ++index) {
-      const Sighting& sighting = view.sightings[index];
+      const WallSighting& sighting = view.sightings[index];
       const double misfit_rad = std::abs(off_rad(sighting, angles) - common_rad);
       const double sigmas = misfit_rad / std::sqrt(sighting.variance);
       if (misfit_rad < kLeastMisfitRad || sigmas < worst_sigmas) continue;
-      if (view.sightings.size() < 2 || sightings_of(views, sighting.wall) < 3) continue;
+      if (view.sightings.size() < 2 || sightings_of_wall(views, sighting.wall) < 3) continue;
       worst_sigmas = sigmas;
       worst_view = &view;
       worst = index;
@@ -208,7 +208,7 @@ ChiSquare scatter_of_walls(const Views& views, const WallAngles& angles) {
   for (const SweepView& view : views) {
     const double common_rad = common_of(view, angles).error_rad;
     chi.freedom += static_cast<double>(view.sightings.size()) - 1.0;
-    for (const Sighting& sighting : view.sightings) {
+    for (const WallSighting& sighting : view.sightings) {
       const double error_rad = off_rad(sighting, angles) - common_rad;
       chi.sum += error_rad * error_rad / sighting.variance;
     }
@@ -218,7 +218,7 @@ ChiSquare scatter_of_walls(const Views& views, const WallAngles& angles) {
 
 WallAngles widen_normals(double times, const RoomWalls& room, Views& views) {
   for (SweepView& view : views) {
-    for (Sighting& sighting : view.sightings) sighting.variance *= times * times;
+    for (WallSighting& sighting : view.sightings) sighting.variance *= times * times;
   }
   return fit_angles(views, room.walls.size());
 }

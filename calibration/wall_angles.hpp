@@ -12,7 +12,7 @@
 namespace swivel {
 
 // One wall in one sweep: by how much it is off its place if the plate stood as drawn.
-struct Sighting {
+struct WallSighting {
   std::size_t wall;  // index into RoomWalls::walls
   double error_rad;
   double variance;  // of its normal; what beta adds is common to the sweep
@@ -21,7 +21,7 @@ struct Sighting {
 struct SweepView {
   std::string name;
   double beta_variance;
-  std::vector<Sighting> sightings;
+  std::vector<WallSighting> sightings;
 };
 using Views = std::vector<SweepView>;
 
