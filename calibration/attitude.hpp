@@ -31,7 +31,7 @@ struct AttitudeEstimate {
   std::optional<PlateFit> fit;  // of an estimator that makes one: what a calibration learns from
 };
 
-// Takes the raw cloud in O', its Z the axis of rotation, the height 0 at the axis frame's origin.
+// Takes the raw cloud in O', as it was assembled.
 using AttitudeEstimator =
     std::function<AttitudeEstimate(const OrganisedCloud&, const PlateGeometry&)>;
 

@@ -13,4 +13,10 @@ void transform_cloud(const Eigen::Isometry3d& T_to_from, OrganisedCloud& cloud) 
   }
 }
 
+AlongAxis::AlongAxis(const OrganisedCloud& cloud, const RigGeometry& rig) : original_(cloud) {
+  if (rig.T_base_axis.isApprox(Eigen::Isometry3d::Identity())) return;
+  moved_ = cloud;
+  transform_cloud(rig.T_base_axis.inverse(), *moved_);
+}
+
 }  // namespace swivel

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "components/common/calibration_file.hpp"
+#include "components/common/plate_shape_message.hpp"
 #include "components/common/strict_yaml.hpp"
 
 namespace swivel {
@@ -58,6 +59,8 @@ AlphaCalibration::AlphaCalibration(const RigFile& rig, const AlphaWishes& wishes
   if (!rig.plate) {
     throw ConfigurationError(rig.path + ": has no 'plate', so there is no alpha to calibrate");
   }
+  drawn_ = *rig.plate;
+  estimate_ = attitude_estimator(rig.estimator, rig.geometry);
   options_.initial_alpha_rad = rig.plate->alpha_rad;
   options_.room_yaw_rad = rad_from_deg(wishes.room_yaw_deg);
   options_.least_sweeps = wishes.least_sweeps;
@@ -78,6 +81,10 @@ AlphaCalibration::Added AlphaCalibration::add(const msg::Attitude& attitude,
   sweep.walls = find_walls(cloud, kWallsLookedFor);
   sweep.name = name.empty() ? std::to_string(attitude.sweep_id()) : name;
   const std::size_t walls = sweep.walls.size();
+  // The attitude may rest on the calibration before this one; the plate is learned anew.
+  if (estimate_) {
+    if (const auto fit = (*estimate_)(cloud, drawn_).fit) fits_.push_back(*fit);
+  }
   modes_.insert(attitude.mode());
   estimator_ = attitude.estimator();
   sweeps_.push_back(std::move(sweep));
@@ -87,11 +94,24 @@ AlphaCalibration::Added AlphaCalibration::add(const msg::Attitude& attitude,
 
 AlphaCalibration::Outcome AlphaCalibration::fit(const LidarName& lidar,
                                                 std::int64_t time_ns) const {
-  const AlphaResult result = fit_alpha(sweeps_, options_);
+  const bool learned = !fits_.empty() && fits_.size() == sweeps_.size();
+  const LearnedPlate plate = learned ? learn_plate(fits_, drawn_.shape) : LearnedPlate();
+  const AlphaResult result = fit_alpha(learned ? with_learned_betas(plate) : sweeps_, options_);
   if (!result.fit) return {std::nullopt, result.reason};
   std::string words = fit_in_words(*result.fit, origin_in_words(*result.fit));
   if (wanted_sigma_deg_) words += "; " + more_sweeps_in_words(*result.fit, *wanted_sigma_deg_);
-  return {to_message(*result.fit, lidar, time_ns), words};
+  Outcome outcome{to_message(*result.fit, lidar, time_ns), words};
+  if (learned) swivel::to_message(plate, *outcome.calibration);
+  return outcome;
+}
+
+std::vector<AlphaSweep> AlphaCalibration::with_learned_betas(const LearnedPlate& plate) const {
+  std::vector<AlphaSweep> sweeps = sweeps_;
+  for (std::size_t sweep = 0; sweep < sweeps.size(); ++sweep) {
+    sweeps[sweep].beta_rad = plate.betas_rad[sweep].value;
+    sweeps[sweep].beta_sigma_rad = plate.betas_rad[sweep].sigma;
+  }
+  return sweeps;
 }
 
 std::string AlphaCalibration::origin_in_words(const AlphaFit& fit) const {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "calibration/alpha.hpp"
+#include "calibration/attitude.hpp"
+#include "calibration/plate_learning.hpp"
 #include "components/common/rig_file.hpp"
 #include "swivel/idl/swivel.h"
 
@@ -53,9 +55,14 @@ class AlphaCalibration {
   msg::Calibration to_message(const AlphaFit& fit, const LidarName& lidar,
                               std::int64_t time_ns) const;
 
+  std::vector<AlphaSweep> with_learned_betas(const LearnedPlate& plate) const;
+
   std::string rig_;
+  PlateGeometry drawn_;
+  std::optional<AttitudeEstimator> estimate_;
   AlphaOptions options_;
   std::vector<AlphaSweep> sweeps_;
+  std::vector<PlateFit> fits_;  // of each sweep, where the estimator makes them
   std::optional<double> wanted_sigma_deg_;
   std::string estimator_;
   std::set<int> modes_;

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "calibration/in_words.hpp"
 #include "calibration/transform_cloud.hpp"
 #include "components/common/calibration_file.hpp"
+#include "components/common/plate_shape_message.hpp"
 #include "components/common/strict_yaml.hpp"
 
 namespace swivel {
@@ -78,10 +80,13 @@ std::string Corrector::set_calibration(const msg::Calibration& calibration) {
   alpha_deg_ = calibration.alpha_deg();
   alpha_sigma_deg_ = sigma_deg;
   calibrated_ = true;
+  const auto shape = plate_shape_of(calibration);
+  if (shape && rig_.plate) rig_.plate->shape = *shape;
+  watch_.calibrated(shape, m_from_mm(calibration.plate_residual_mm()));
   return {};
 }
 
-msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud) const {
+msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud) {
   msg::Attitude attitude = blank_attitude(sweep);
   if (!estimator_) {
     attitude.verdict(msg::VERDICT_MEASURED);
@@ -92,21 +97,35 @@ msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud)
   attitude.estimator(rig_.estimator);
   attitude.alpha_deg(alpha_deg_);
   attitude.calibrated(calibrated_);
-  fill(estimate(cloud), attitude);
+  const AttitudeEstimate estimate = (*estimator_)(cloud, *rig_.plate);
+  const SeamEstimate seam = measure_seam(AlongAxis(cloud, rig_.geometry).cloud());
+  fill(estimate, attitude);
+  judge_turn(sweep, seam, attitude);
   if (attitude.verdict() == msg::VERDICT_GOOD) {
+    attitude.warning(watch_.add(estimate, seam));
     transform_cloud(base_from_start(rig_.geometry, rad_from_deg(attitude.phi_offset_deg())), cloud);
     if (sweep.lines_missing() > 0) attitude.reason("the plate is whole; " + sweep.reason());
   }
   return attitude;
 }
 
-// The estimator looks along the axis, wherever that stands in the base.
-AttitudeEstimate Corrector::estimate(const OrganisedCloud& cloud) const {
-  const Eigen::Isometry3d& T_base_axis = rig_.geometry.T_base_axis;
-  if (T_base_axis.isApprox(Eigen::Isometry3d::Identity())) return (*estimator_)(cloud, *rig_.plate);
-  OrganisedCloud about_axis = cloud;
-  transform_cloud(T_base_axis.inverse(), about_axis);
-  return (*estimator_)(about_axis, *rig_.plate);
+// A plate that is seen well says nothing of a shaft that lost steps before or after it.
+void Corrector::judge_turn(const msg::Sweep& sweep, const SeamEstimate& seam,
+                           msg::Attitude& attitude) const {
+  attitude.seam_deg(deg_from_rad(seam.further_rad));
+  attitude.seam_sigma_deg(deg_from_rad(seam.sigma_rad));
+  if (attitude.verdict() != msg::VERDICT_GOOD) return;
+  const bool naive = sweep.action_sequence() == msg::SEQUENCE_NAIVE;
+  if (!naive && !seam_is_open(seam)) return;
+  attitude.verdict(msg::VERDICT_SEAM_OPEN);
+  if (!seam_is_open(seam)) {
+    attitude.reason("the motor started with the sweep (naive): its first lines are bent");
+    return;
+  }
+  attitude.reason(in_words(
+      "the shaft turned ", spoken_deg(std::abs(seam.further_rad)), " +- ",
+      spoken_deg(seam.sigma_rad), seam.further_rad < 0.0 ? " deg less" : " deg further",
+      " than said between the sweep's first and last lines: steps lost, or speed not constant"));
 }
 
 void Corrector::fill(const AttitudeEstimate& estimate, msg::Attitude& attitude) const {

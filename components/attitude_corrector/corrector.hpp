@@ -5,6 +5,7 @@
 #include <string>
 
 #include "calibration/attitude.hpp"
+#include "components/attitude_corrector/calibration_watch.hpp"
 #include "components/common/rig_file.hpp"
 #include "swivel/idl/swivel.h"
 
@@ -21,7 +22,7 @@ class Corrector {
 
   // Estimates the attitude and, if it is good, turns the cloud into the base. A cloud whose
   // attitude is not good is left as it came.
-  msg::Attitude correct(const msg::Sweep& sweep, OrganisedCloud& cloud) const;
+  msg::Attitude correct(const msg::Sweep& sweep, OrganisedCloud& cloud);
 
   // Whether a cloud of that verdict stands in the rig's base.
   static bool in_base(msg::Verdict verdict) {
@@ -29,7 +30,7 @@ class Corrector {
   }
 
  private:
-  AttitudeEstimate estimate(const OrganisedCloud& cloud) const;
+  void judge_turn(const msg::Sweep& sweep, const SeamEstimate& seam, msg::Attitude& attitude) const;
   void fill(const AttitudeEstimate& estimate, msg::Attitude& attitude) const;
 
   RigFile rig_;
@@ -37,6 +38,7 @@ class Corrector {
   double alpha_deg_ = 0.0;
   double alpha_sigma_deg_ = 0.0;
   bool calibrated_ = false;
+  CalibrationWatch watch_;
 };
 
 // As in files and on the command line: "good", "no_plate".

@@ -20,6 +20,7 @@ namespace {
 constexpr int kAllDigits = std::numeric_limits<double>::max_digits10;
 constexpr Range kAnyAngle{-360.0, 360.0};
 constexpr Range kAnyLength{-1e5, 1e5};
+constexpr std::size_t kPlateShapeSize = 6;
 constexpr Range kAnyCovariance{-1e12, 1e12};
 constexpr Range kNanoseconds{0.0, 9.2e18};
 
@@ -70,6 +71,11 @@ std::string to_yaml(const msg::Calibration& calibration) {
        << "serial_number: " << quoted(calibration.serial_number()) << "\n"
        << "firmware: " << quoted(calibration.firmware()) << "\n"
        << "provenance: " << quoted(calibration.provenance()) << "\n"
+       << "# Of the plate against its drawing: height (mm), roll and pitch (deg), growth and\n"
+       << "# softness of its edges (mm), offset of ranges (mm); zeros where not estimated.\n"
+       << "plate_shape: " << list_of(calibration.plate_shape()) << "\n"
+       << "plate_shape_sigma: " << list_of(calibration.plate_shape_sigma()) << "\n"
+       << "plate_residual_mm: " << calibration.plate_residual_mm() << "\n"
        << "# Over alpha, bias, mounting x y z, roll pitch yaw; zeros where not estimated.\n"
        << "covariance: " << list_of(calibration.covariance()) << "\n";
   return yaml.str();
@@ -84,6 +90,14 @@ std::int64_t read_time_ns(YamlSection& file) {
   const auto [stop, error] = std::from_chars(text.data(), end, time_ns);
   if (error != std::errc() || stop != end) file.refuse("time_ns", "must be a whole number");
   return time_ns;
+}
+
+void read_plate(YamlSection& file, msg::Calibration& calibration) {
+  const auto shape = file.numbers("plate_shape", kPlateShapeSize, kAnyLength);
+  const auto sigma = file.numbers("plate_shape_sigma", kPlateShapeSize, {0.0, 1e5});
+  std::copy(shape.begin(), shape.end(), calibration.plate_shape().begin());
+  std::copy(sigma.begin(), sigma.end(), calibration.plate_shape_sigma().begin());
+  calibration.plate_residual_mm(file.number("plate_residual_mm", {0.0, 1e3}));
 }
 
 }  // namespace
@@ -115,6 +129,7 @@ msg::Calibration load_calibration(const std::string& path) {
   calibration.serial_number(file.text("serial_number"));
   calibration.firmware(file.text("firmware"));
   calibration.provenance(file.text("provenance"));
+  if (file.has("plate_shape")) read_plate(file, calibration);
   const auto covariance =
       file.numbers("covariance", kCalibrationSize * kCalibrationSize, kAnyCovariance);
   std::copy(covariance.begin(), covariance.end(), calibration.covariance().begin());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "calibration/seam.hpp"
 #include "calibration/units.hpp"
 
 namespace swivel {
@@ -13,10 +14,8 @@ namespace {
 
 using Findings = std::vector<Finding>;
 
-constexpr double kEnoughWithin = 0.95;    // of a wall's points within 40 mm
-constexpr double kSeamSigmas = 4.0;       // beyond which a seam is open for certain
-constexpr double kTellingSeam_deg = 0.1;  // what is less does no harm
-constexpr std::size_t kFewSweeps = 5;     // the paper has five a mode
+constexpr double kEnoughWithin = 0.95;  // of a wall's points within 40 mm
+constexpr std::size_t kFewSweeps = 5;   // the paper has five a mode
 
 void good(Findings& findings, const std::string& words) {
   findings.push_back({Finding::Kind::kGood, words});
@@ -158,8 +157,10 @@ void find_seam(const Evaluation& evaluation, Findings& findings) {
   for (const SweepFacts& sweep : evaluation.sweeps) {
     if (std::isnan(sweep.seam_deg)) continue;
     ++known;
-    const double sure_deg = std::max(kTellingSeam_deg, kSeamSigmas * sweep.seam_sigma_deg);
-    if (std::abs(sweep.seam_deg) <= sure_deg) continue;
+    SeamEstimate seam;
+    seam.further_rad = rad_from_deg(sweep.seam_deg);
+    seam.sigma_rad = rad_from_deg(sweep.seam_sigma_deg);
+    if (!seam_is_open(seam)) continue;
     open += fmt::format("{}{} ({:+.3f} deg)", open.empty() ? "" : ", ", sweep.attitude.sweep,
                         sweep.seam_deg);
   }

@@ -74,9 +74,6 @@ nlohmann::ordered_json SweepEvaluator::add(const ProcessedSweep& processed) {
   device_stamps_ms_.push_back(processed.sweep.first_device_stamp_ms());
   if (!processed.cloud.points.empty()) draw(processed, surfaces);
   nlohmann::ordered_json json;
-  json["seam_deg"] = processed.attitude.seam_deg();
-  json["seam_sigma_deg"] = processed.attitude.seam_sigma_deg();
-  json["warning"] = processed.attitude.warning();
   json["surfaces"] = surfaces_json(surfaces);
   return json;
 }

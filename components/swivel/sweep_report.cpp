@@ -76,6 +76,9 @@ nlohmann::ordered_json sweep_json(const ProcessedSweep& processed) {
   json["phi_offset_sigma_deg"] = attitude.phi_offset_sigma_deg();
   json["plate_points_used"] = attitude.points_used();
   json["plate_residual_mm"] = attitude.residual_mm();
+  json["seam_deg"] = attitude.seam_deg();
+  json["seam_sigma_deg"] = attitude.seam_sigma_deg();
+  json["warning"] = attitude.warning();
   json["largest_planes"] = planes_json(processed.cloud);
   return json;
 }

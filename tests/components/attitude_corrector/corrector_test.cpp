@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "components/common/calibration_file.hpp"
+#include "components/common/plate_shape_message.hpp"
 #include "components/common/strict_yaml.hpp"
 #include "tests/calibration/plate_case.hpp"
 #include "tests/calibration/unlike_rig.hpp"
@@ -132,6 +133,65 @@ TEST(Corrector, ACalibrationMovesPhiOffsetFromTheNextSweepOnAndItsSigmaAddsUp) {
   EXPECT_TRUE(calibrated.calibrated());
   EXPECT_NEAR(calibrated.phi_offset_sigma_deg(), std::hypot(drawn.beta_sigma_deg(), 0.4), 1e-9);
   EXPECT_GT(drawn.beta_sigma_deg(), 0.0);
+}
+
+// Ten degrees lost midway: what was seen after it stands where the shaft was told to be.
+OrganisedCloud with_lost_steps(const OrganisedCloud& whole, double lost_deg) {
+  const Eigen::AngleAxisd back(rad_from_deg(lost_deg), Eigen::Vector3d::UnitZ());
+  const OrganisedCloud turned = moved(whole, Eigen::Isometry3d(back));
+  OrganisedCloud cloud = whole;
+  const auto half = static_cast<std::ptrdiff_t>(cloud.points.size() / 2);
+  std::copy(turned.points.begin() + half, turned.points.end(), cloud.points.begin() + half);
+  return cloud;
+}
+
+// The plate was seen before the loss: it stands where it should, and knows nothing of it.
+TEST(Corrector, ASweepWhoseShaftLostStepsIsNotGoodAndSaysHowMany) {
+  OrganisedCloud whole = recorded().sweeps[0].cloud;
+  Corrector corrector(yuans_rig_file());
+  const msg::Attitude good = corrector.correct(whole_sweep(), whole);
+  ASSERT_EQ(good.verdict(), msg::VERDICT_GOOD) << good.reason();
+  EXPECT_LT(std::abs(good.seam_deg()), 5.0 * good.seam_sigma_deg());
+
+  OrganisedCloud bent = with_lost_steps(recorded().sweeps[0].cloud, 3.0);
+  const OrganisedCloud before = bent;
+  const msg::Attitude attitude = corrector.correct(whole_sweep(), bent);
+  EXPECT_EQ(attitude.verdict(), msg::VERDICT_SEAM_OPEN) << attitude.reason();
+  EXPECT_NEAR(attitude.seam_deg(), -3.0, 0.6);
+  EXPECT_THAT(attitude.reason(), HasSubstr("less than said"));
+  EXPECT_TRUE(same_bits(bent, before)) << "an uncorrected cloud goes out as it came";
+}
+
+TEST(Corrector, ANaiveSweepIsNeverGood) {
+  msg::Sweep sweep = whole_sweep();
+  sweep.action_sequence(msg::SEQUENCE_NAIVE);
+  OrganisedCloud cloud = recorded().sweeps[0].cloud;
+  const msg::Attitude attitude = Corrector(yuans_rig_file()).correct(sweep, cloud);
+  EXPECT_EQ(attitude.verdict(), msg::VERDICT_SEAM_OPEN);
+  EXPECT_THAT(attitude.reason(), HasSubstr("naive"));
+}
+
+// A plate that was calibrated as tilted by 3 deg, and is not: three sweeps say so, two may be
+// chance.
+TEST(Corrector, SaysThatACalibrationIsDueWhenThePlateIsNotAsItWas) {
+  RigFile rig = yuans_rig_file();
+  rig.estimator = "plate_outline";
+  for (const double roll_deg : {0.0, 3.0}) {
+    LearnedPlate plate;
+    plate.shape = PlateShape();
+    plate.shape.roll_rad = {rad_from_deg(roll_deg), rad_from_deg(0.05)};
+    plate.residual_m = 0.013;
+    msg::Calibration known = calibration(30.0, 0.1);
+    to_message(plate, known);
+    Corrector corrector(rig);
+    ASSERT_TRUE(corrector.set_calibration(known).empty());
+    for (int sweep = 1; sweep <= 3; ++sweep) {
+      OrganisedCloud cloud = recorded().sweeps[0].cloud;
+      const msg::Attitude attitude = corrector.correct(whole_sweep(), cloud);
+      ASSERT_EQ(attitude.verdict(), msg::VERDICT_GOOD) << attitude.reason();
+      EXPECT_EQ(attitude.warning().empty(), sweep < 3 || roll_deg == 0.0) << attitude.warning();
+    }
+  }
 }
 
 TEST(Corrector, ACalibrationThatIsNoNumberIsNotTaken) {

@@ -48,6 +48,9 @@ msg::Calibration awkward_calibration() {
   calibration.residual_deg(0.0437);
   calibration.chi_square(100.0 / 7.0);
   calibration.degrees_of_freedom(16);
+  calibration.plate_shape({0.1, -1.0 / 3.0, 0.3, 1.9, 0.08, -2.0 / 7.0});
+  calibration.plate_shape_sigma({0.1, 0.05, 0.05, 0.1, 0.06, 0.4});
+  calibration.plate_residual_mm(13.0 / 3.0);
   calibration.sweeps_used(50);
   calibration.mode(7);
   calibration.serial_number("H1\"23\\4: #x");

@@ -51,7 +51,11 @@ TEST(AttitudeCharts, NeverDrawASweepWithoutAttitudeAsCorrected) {
 TEST(PlateChart, ShowsHitsAndMissesEachInItsColour) {
   const ScratchFolder scratch;
   const std::string path = scratch.file("plate.png");
-  const PlateBeam hit{0.08, 0.02, 0.0, 0, true}, miss{0.08, -0.05, 0.0, 0, false};
+  PlateBeam hit, miss;
+  hit.x_m = miss.x_m = 0.08;
+  hit.y_m = 0.02;
+  miss.y_m = -0.05;
+  hit.in_ring = true;
   ASSERT_TRUE(write_plate_chart(path, {hit}, {}, std::nullopt, {}));
   EXPECT_GT(pixels_of(path, kBlueDot), 0);
   EXPECT_EQ(pixels_of(path, kOrangeDot), 0);
