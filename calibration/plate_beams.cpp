@@ -69,16 +69,15 @@ std::optional<PlateBeam> BeamTracer::trace(const CloudPoint& point) const {
   if (along.z() >= -kLeastDescent * range_m) return std::nullopt;
   const double part = (height_m_ - centre->z()) / along.z();
   const Eigen::Vector3d met = *centre + part * along;
-  const double radius_m = met.head<2>().norm();
-  if (met.x() <= 0.0 || radius_m < plate_.ring_inner_m || radius_m > plate_.ring_outer_m)
+  const double square = met.head<2>().squaredNorm();
+  if (met.x() <= 0.0 || square < plate_.ring_inner_m * plate_.ring_inner_m ||
+      square > plate_.ring_outer_m * plate_.ring_outer_m)
     return std::nullopt;
   return PlateBeam{met.x(),
                    met.y(),
-                   std::atan2(met.y(), met.x()),
                    along.x() / along.z(),
                    along.y() / along.z(),
                    range_m * (1.0 - part),
-                   range_m / along.z(),
                    0,
                    in_ring(point, plate_, height_m_)};
 }
@@ -131,7 +130,7 @@ std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGe
     for (std::size_t beam = columns.first; beam < columns.end; ++beam) {
       auto met = tracer.trace(cloud.line(line)[beam]);
       if (!met) continue;
-      met->line = line;
+      met->line = static_cast<std::uint32_t>(line);
       beams.push_back(*met);
     }
   }

@@ -4,6 +4,8 @@
 // plane gives where it would meet the plate. So the outline is sharp.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "calibration/organised_cloud.hpp"
@@ -15,13 +17,17 @@ namespace swivel {
 struct PlateBeam {
   double x_m = 0.0;  // where it meets the plane, in O'
   double y_m = 0.0;
-  double azimuth_rad = 0.0;
   double slope_x = 0.0;  // by how much that place moves when the plane is higher
   double slope_y = 0.0;
-  double beyond_m = 0.0;          // measured range less the range of that place
-  double range_per_height = 0.0;  // by how much the range of that place then changes
-  std::size_t line = 0;
+  double beyond_m = 0.0;  // measured range less the range of that place
+  std::uint32_t line = 0;
   bool in_ring = false;  // the point that it measured lies in the ring
+
+  double azimuth_rad() const { return std::atan2(y_m, x_m); }
+  // By how much the range of that place changes when the plane is higher.
+  double range_per_height() const {
+    return -std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
+  }
 };
 
 // Takes the raw cloud in O', its Z the axis of rotation. Beams without a return are not there.

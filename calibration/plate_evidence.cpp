@@ -74,13 +74,15 @@ double inside_of_all(const std::array<double, 3>& inside_m) {
 
 }  // namespace
 
-PlateRanges ranges_on_plate(const std::vector<PlateBeam>& beams, const PlateTriangle& triangle,
-                            const PlateFrame& frame) {
+PlateRanges ranges_on_plate(const std::vector<PlateBeam>& beams, std::size_t stride,
+                            const PlateTriangle& triangle, const PlateFrame& frame) {
   std::vector<double> beyond_m;
-  for (const PlateBeam& beam : beams) {
+  beyond_m.reserve(beams.size() / stride / 2);
+  for (std::size_t index = 0; index < beams.size(); index += stride) {
+    const PlateBeam& beam = beams[index];
     const PlateMeeting at = frame.meeting(beam);
     if (inside_of_all(triangle.inside_m(at.u, at.v)) < kSure_m) continue;
-    beyond_m.push_back(beam.beyond_m - beam.range_per_height * at.lift_m);
+    beyond_m.push_back(beam.beyond_m - beam.range_per_height() * at.lift_m);
   }
   PlateRanges ranges;
   if (beyond_m.empty()) return ranges;
@@ -98,20 +100,22 @@ PlateRanges ranges_on_plate(const std::vector<PlateBeam>& beams, const PlateTria
   return ranges;
 }
 
-std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, const PlateTriangle& triangle,
-                                 const PlateParameters& parameters, double offset_m,
-                                 double least_zone_m) {
+std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, std::size_t stride,
+                                 const PlateTriangle& triangle, const PlateParameters& parameters,
+                                 double offset_m, double least_zone_m) {
   const PlateFrame frame(parameters, triangle.middle_m());
   Evidence evidence;
   Background background;
   std::vector<EdgeBeam> candidates;
-  for (const PlateBeam& beam : beams) {
+  candidates.reserve(beams.size() / stride / 2);
+  for (std::size_t index = 0; index < beams.size(); index += stride) {
+    const PlateBeam& beam = beams[index];
     const PlateMeeting at = frame.meeting(beam);
     auto inside_m = triangle.inside_m(at.u, at.v);
     const auto edge = static_cast<std::size_t>(std::min_element(inside_m.begin(), inside_m.end()) -
                                                inside_m.begin());
     const double nearest_m = inside_m[edge];
-    const double beyond_m = beam.beyond_m - beam.range_per_height * at.lift_m - offset_m;
+    const double beyond_m = beam.beyond_m - beam.range_per_height() * at.lift_m - offset_m;
     const std::size_t cell = Background::cell(edge, at);
     if (std::abs(nearest_m) > kSure_m) evidence.learn(beyond_m, nearest_m > 0.0);
     if (nearest_m < -kSure_m) background.learn(cell, beyond_m);
@@ -125,7 +129,7 @@ std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, const Plat
   for (EdgeBeam& beam : candidates) {
     beam.near = background.near(beam.cell);
     const EdgeDepth depth = depth_of(beam, frame.meeting(beam.beam), triangle, parameters);
-    const double soft_m = std::exp(parameters[kLogSoftness]) * depth.slant;
+    const double soft_m = frame.softness_m() * depth.slant;
     if (std::abs(depth.inside_m) > std::max(least_zone_m, kZone_softnesses * soft_m)) continue;
     const double ratio = evidence.ratio(beam.beyond_m);
     beam.odds = std::exp(ratio);

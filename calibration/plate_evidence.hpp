@@ -15,13 +15,14 @@ struct PlateRanges {
   std::size_t hits = 0;
 };
 
-PlateRanges ranges_on_plate(const std::vector<PlateBeam>& beams, const PlateTriangle& triangle,
-                            const PlateFrame& frame);
+// Here and below, every `stride`th beam counts.
+PlateRanges ranges_on_plate(const std::vector<PlateBeam>& beams, std::size_t stride,
+                            const PlateTriangle& triangle, const PlateFrame& frame);
 
 // The beams near one edge alone, as near as its softness reaches and at least `least_zone_m`.
 // What their ranges say is learned from all the others.
-std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, const PlateTriangle& triangle,
-                                 const PlateParameters& parameters, double offset_m,
-                                 double least_zone_m);
+std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, std::size_t stride,
+                                 const PlateTriangle& triangle, const PlateParameters& parameters,
+                                 double offset_m, double least_zone_m);
 
 }  // namespace swivel

@@ -59,7 +59,7 @@ void add_beam(const EdgeBeam& edge, const PlateTriangle& triangle, const PlateFr
   normal.beams += trust;
   const PlateParameter growth = edge.near ? kGrowthNear : kGrowth;
   const auto [inside_m, by_height, slant] = depth_of(edge, at, triangle, parameters);
-  const double softness_m = std::exp(parameters[kLogSoftness]) * slant;
+  const double softness_m = frame.softness_m() * slant;
   const double x = inside_m / softness_m;
   if (std::abs(x) > kFar) {  // sure of its side: it moves nothing, but may be wrong
     const double wrong = (x > 0.0 ? 1.0 : edge.odds) / (1.0 + edge.odds);
@@ -80,7 +80,7 @@ void add_beam(const EdgeBeam& edge, const PlateTriangle& triangle, const PlateFr
   by[kLogSoftness] = -x * softness_m;
   by *= steepness / softness_m;
   const double known = edge.sureness * edge.sureness;
-  normal.information.selfadjointView<Eigen::Lower>().rankUpdate(by, trust * known / variance);
+  normal.information.noalias() += (trust * known / variance * by) * by.transpose();
   normal.gradient += (trust * (hit - chance) / variance) * by;
   normal.misfit += trust * (hit - chance) * (hit - chance) / variance;
 }
@@ -102,7 +102,6 @@ Normal normal_equations(const std::vector<EdgeBeam>& beams, const PlateTriangle&
   const PlateFrame frame(parameters, triangle.middle_m());
   Normal normal;
   for (const EdgeBeam& beam : beams) add_beam(beam, triangle, frame, parameters, normal);
-  normal.information = normal.information.selfadjointView<Eigen::Lower>();
   for (std::size_t i = 0; i < before.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double precision = 1.0 / (before[i].sigma * before[i].sigma);
@@ -164,9 +163,10 @@ std::optional<PlateFit> fit_plate(const std::vector<PlateBeam>& beams, const Pla
   PlateRanges ranges;
   std::optional<Information> covariance;
   for (const Round& round : kRounds) {
-    const auto some = some_of(beams, round.most_beams);
-    ranges = ranges_on_plate(some, triangle, PlateFrame(parameters, triangle.middle_m()));
-    const auto chosen = edge_beams(some, triangle, parameters, ranges.offset_m, round.least_zone_m);
+    const std::size_t stride = 1 + beams.size() / round.most_beams;
+    ranges = ranges_on_plate(beams, stride, triangle, PlateFrame(parameters, triangle.middle_m()));
+    const auto chosen =
+        edge_beams(beams, stride, triangle, parameters, ranges.offset_m, round.least_zone_m);
     fit.edge_beams = chosen.size();
     covariance = climb(chosen, triangle, before, round.converged, parameters, fit.misfit);
   }

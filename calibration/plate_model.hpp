@@ -69,7 +69,10 @@ class PlateFrame {
       : parameters_(parameters),
         cos_(std::cos(parameters[kBeta])),
         sin_(std::sin(parameters[kBeta])),
-        middle_m_(middle_m) {}
+        middle_m_(middle_m),
+        softness_m_(std::exp(parameters[kLogSoftness])) {}
+
+  double softness_m() const { return softness_m_; }
 
   PlateMeeting meeting(const PlateBeam& beam) const {
     PlateMeeting at;
@@ -89,6 +92,7 @@ class PlateFrame {
   double cos_;
   double sin_;
   double middle_m_;
+  double softness_m_;
 };
 
 // A beam near one edge, and what it says.

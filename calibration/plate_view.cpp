@@ -22,7 +22,7 @@ struct Search {
   std::size_t most_beams;  // more than these only take time
 };
 constexpr Search kCoarse{rad_from_deg(30.0), rad_from_deg(3.0), 3'000};
-constexpr Search kFine{rad_from_deg(3.0), rad_from_deg(0.5), 10'000};
+constexpr Search kFine{rad_from_deg(3.0), rad_from_deg(0.5), 5'000};
 constexpr double kFitShare = 0.3;  // of beams in the ring, between plate and no plate
 constexpr double kFitDepthM = 0.010;
 constexpr double kSectorHalfWidthRad = rad_from_deg(44.0);  // the corners lie at 45.6 deg
@@ -50,13 +50,15 @@ struct Tally {
   }
 };
 
+constexpr std::size_t kTalliedBeams = 15'000;  // in cells: more only take time
+
 // Cells of 10 deg and 18 mm about the axis, counted from the plate's middle line.
 class CellGrid {
  public:
   CellGrid(const PlateGeometry& plate, double beta_rad) : plate_(plate), beta_rad_(beta_rad) {}
 
   Tally& cell_of(const PlateBeam& beam) {
-    const double azimuth_rad = beam.azimuth_rad - beta_rad_;  // both on the side of X' > 0
+    const double azimuth_rad = beam.azimuth_rad() - beta_rad_;  // both on the side of X' > 0
     const double radius_m = std::sqrt(beam.x_m * beam.x_m + beam.y_m * beam.y_m);
     const double part =
         (radius_m - plate_.ring_inner_m) / (plate_.ring_outer_m - plate_.ring_inner_m);
@@ -134,21 +136,22 @@ struct LineAzimuths {
 // Beams further off than this are of the fan's other end, half a turn away.
 constexpr double kOtherEndRad = 0.7;
 
-LineAzimuths fit_near(const std::vector<PlateBeam>& beams, const LineAzimuths& guess,
-                      double within_rad) {
+LineAzimuths fit_near(const std::vector<PlateBeam>& beams, const std::vector<double>& azimuths_rad,
+                      const LineAzimuths& guess, double within_rad) {
   LineAzimuths fit;
   fit.beams.assign(guess.beams.size(), 0);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // of line and azimuth
   Eigen::Vector2d products = Eigen::Vector2d::Zero();
   double count = 0.0;
-  for (const PlateBeam& beam : beams) {
-    const auto line = static_cast<double>(beam.line);
+  for (std::size_t index = 0; index < beams.size(); ++index) {
+    const auto line = static_cast<double>(beams[index].line);
+    const double azimuth_rad = azimuths_rad[index];
     const double guessed_rad = guess.first_rad + guess.step_rad * line;
-    if (std::abs(beam.azimuth_rad - guessed_rad) > within_rad) continue;
-    ++fit.beams[beam.line];
+    if (std::abs(azimuth_rad - guessed_rad) > within_rad) continue;
+    ++fit.beams[beams[index].line];
     count += 1.0;
-    sum += Eigen::Vector2d(line, beam.azimuth_rad);
-    products += line * Eigen::Vector2d(line, beam.azimuth_rad);
+    sum += Eigen::Vector2d(line, azimuth_rad);
+    products += line * Eigen::Vector2d(line, azimuth_rad);
   }
   if (count < 1.0) return fit;
   const double squares = products.x() - sum.x() * sum.x() / count;
@@ -158,11 +161,14 @@ LineAzimuths fit_near(const std::vector<PlateBeam>& beams, const LineAzimuths& g
 }
 
 LineAzimuths fit_line_azimuths(const std::vector<PlateBeam>& beams, std::size_t lines) {
+  std::vector<double> azimuths_rad;
+  azimuths_rad.reserve(beams.size());
+  for (const PlateBeam& beam : beams) azimuths_rad.push_back(beam.azimuth_rad());
   LineAzimuths fit;
   fit.beams.assign(lines, 0);
-  fit = fit_near(beams, fit, 2 * kPi);
+  fit = fit_near(beams, azimuths_rad, fit, 2 * kPi);
   for (const double within_rad : {2 * kOtherEndRad, kOtherEndRad, kOtherEndRad}) {
-    fit = fit_near(beams, fit, within_rad);
+    fit = fit_near(beams, azimuths_rad, fit, within_rad);
   }
   return fit;
 }
@@ -285,9 +291,10 @@ PlateView judge_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
   if (tally.beams < kLeastBeams || view.occupancy < kEnoughPlate) {
     return say(AttitudeVerdict::kTooFewPoints, "too few points on the plate: " + seen);
   }
-  const std::string foreign = foreign_object(plate, beams, view.outline_beta_rad);
+  const std::vector<PlateBeam> some = some_of(beams, kTalliedBeams);
+  const std::string foreign = foreign_object(plate, some, view.outline_beta_rad);
   if (!foreign.empty()) return say(AttitudeVerdict::kForeignObject, foreign);
-  const std::string hidden = hidden_part(plate, beams, view.outline_beta_rad);
+  const std::string hidden = hidden_part(plate, some, view.outline_beta_rad);
   if (!hidden.empty()) return say(AttitudeVerdict::kForeignObject, hidden);
   return say(AttitudeVerdict::kGood, "");
 }

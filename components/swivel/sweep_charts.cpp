@@ -298,8 +298,8 @@ Outcome write_seam_chart(const std::string& path, const OrganisedCloud& cloud,
   }
   paper.write(std::isnan(said.further_deg)
                   ? "seam_deg: not known"
-                  : "seam_deg: the shaft turned " + with_decimals(said.further_deg, 3) + " +- " +
-                        with_decimals(said.sigma_deg, 3) + " deg further than said",
+                  : "seam_deg " + with_decimals(said.further_deg, 3) + " +- " +
+                        with_decimals(said.sigma_deg, 3) + ": further than said",
               {kSheetLeft + kMapSide + 100, 704}, 17, kBlack);
   paper.write("dashed: a seam open by 1 deg", {kSheetLeft + kMapSide + 100, 732}, 17, kGrey);
   return paper.save(path);

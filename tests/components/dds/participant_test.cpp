@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/components/dds/test_participant.hpp"
+#include "tests/support/own_path.hpp"
 
 namespace swivel {
 namespace {
@@ -80,7 +81,7 @@ std::string best_effort_profiles() {
   for (std::size_t at = 0; (at = text.find(reliable, at)) != std::string::npos;) {
     text.replace(at, reliable.size(), "<kind>BEST_EFFORT</kind><max_blocking_time>");
   }
-  const std::string path = ::testing::TempDir() + "best_effort_profiles.xml";
+  const std::string path = own_path("best_effort_profiles.xml");
   std::ofstream(path) << text;
   return path;
 }

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "components/common/strict_yaml.hpp"
 #include "components/swivel_bench/bench_options.hpp"
+#include "tests/support/own_path.hpp"
 
 namespace swivel {
 namespace {
@@ -16,14 +18,26 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string written(const std::string& text) {
-  std::string path = ::testing::TempDir() + "bench_file_test.yaml";
+  std::string path = own_path("bench_file_test.yaml");
   std::ofstream(path) << text;
   return path;
 }
 
+sim::BenchOptions loaded(const std::string& text) {
+  const std::string path = written(text);
+  try {
+    const sim::BenchOptions options = load_bench_file(path);
+    std::remove(path.c_str());
+    return options;
+  } catch (...) {
+    std::remove(path.c_str());
+    throw;
+  }
+}
+
 std::string refusal_of(const std::string& text) {
   try {
-    load_bench_file(written(text));
+    loaded(text);
   } catch (const ConfigurationError& error) {
     return error.what();
   }

@@ -12,6 +12,8 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/own_path.hpp"
+
 namespace {
 
 using ::testing::MatchesRegex;
@@ -65,7 +67,7 @@ class Program {
 class SwivelBench : public ::testing::TestWithParam<int> {};
 
 TEST_P(SwivelBench, SaysItsAddressesAndEndsCleanlyOnASignal) {
-  const std::string link = ::testing::TempDir() + "swivel_bench_link";
+  const std::string link = swivel::own_path("swivel_bench_link");
   Program bench(link);
   EXPECT_THAT(bench.first_line(),
               MatchesRegex("lidar tcp://127.0.0.1:[0-9]+ stepper .*swivel_bench_link"));

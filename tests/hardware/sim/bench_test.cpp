@@ -11,6 +11,7 @@
 #include "hardware/io/clock.hpp"
 #include "tests/hardware/sim/bench_thread.hpp"
 #include "tests/hardware/sim/scip_replies_by_hand.hpp"
+#include "tests/support/own_path.hpp"
 
 namespace swivel::sim {
 namespace {
@@ -225,7 +226,7 @@ std::vector<std::string> file_lines(const std::string& path) {
 
 TEST(Bench, WritesTheTruthOfEachLineItSends) {
   BenchOptions options = quick_bench();
-  options.truth_path = ::testing::TempDir() + "truth.csv";
+  options.truth_path = own_path("truth.csv");
   std::vector<unsigned> stamps;
   const std::int64_t before_ns = now_ns();
   {
@@ -255,8 +256,8 @@ TEST(Bench, WritesTheTruthOfEachLineItSends) {
 
 TEST(Bench, ConversesOnItsPtyAndTurnsTheShaft) {
   BenchOptions options = quick_bench();
-  options.stepper_link = ::testing::TempDir() + "bench_stepper";
-  options.truth_path = ::testing::TempDir() + "turn.csv";
+  options.stepper_link = own_path("bench_stepper");
+  options.truth_path = own_path("turn.csv");
   {
     BenchThread running(options);
     Client stepper = Client::of_stepper(options.stepper_link);
