@@ -64,6 +64,7 @@ class CorrectionStage {
       spdlog::info("sweep {}: phi_offset {:.3f} +- {:.3f} deg, alpha {}", attitude.sweep_id(),
                    attitude.phi_offset_deg(), attitude.phi_offset_sigma_deg(),
                    attitude.calibrated() ? "calibrated" : "as drawn, not calibrated");
+      if (!attitude.warning().empty()) health_.error(attitude.warning());
     } else {
       health_.error("sweep " + std::to_string(attitude.sweep_id()) +
                     " goes out uncorrected: " + attitude.reason());

@@ -94,6 +94,7 @@ std::string sweep_in_words(const ProcessedSweep& processed) {
     words += ", phi_offset " + number(unwound_deg(attitude.phi_offset_deg()), 3) + " +- " +
              number(attitude.phi_offset_sigma_deg(), 3) + " deg";
   }
+  if (!attitude.warning().empty()) words += "; " + attitude.warning();
   const std::string& reason =
       attitude.reason().empty() ? processed.sweep.reason() : attitude.reason();
   return reason.empty() ? words : words + " (" + reason + ")";
