@@ -109,8 +109,8 @@ Columns columns_at_plate(const OrganisedCloud& cloud, const BeamTracer& tracer) 
 bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m) {
   if (!(std::abs(static_cast<double>(point.z_m) - height_m) <= plate.ring_thickness_m / 2))
     return false;
-  const double x_m = point.x_m;
-  const double y_m = point.y_m;
+  const auto x_m = static_cast<double>(point.x_m);
+  const auto y_m = static_cast<double>(point.y_m);
   const double square = x_m * x_m + y_m * y_m;
   return x_m > 0.0 && square >= plate.ring_inner_m * plate.ring_inner_m &&
          square <= plate.ring_outer_m * plate.ring_outer_m;
