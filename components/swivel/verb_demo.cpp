@@ -9,12 +9,12 @@
 #include <memory>
 #include <sstream>
 
-#include "components/swivel/calibrate_live.hpp"
-#include "components/swivel/participants.hpp"
-#include "components/swivel/roll.hpp"
-#include "components/swivel/scan.hpp"
-#include "components/swivel/text_file.hpp"
-#include "components/swivel/truth_file.hpp"
+#include "components/swivel/live/calibrate_live.hpp"
+#include "components/swivel/live/participants.hpp"
+#include "components/swivel/live/roll.hpp"
+#include "components/swivel/live/scan.hpp"
+#include "components/swivel/live/truth_file.hpp"
+#include "components/swivel/offline/text_file.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {

@@ -6,8 +6,8 @@
 
 #include "components/common/calibration_file.hpp"
 #include "components/common/program.hpp"
-#include "components/swivel/offline_pipeline.hpp"
-#include "components/swivel/output_folder.hpp"
+#include "components/swivel/offline/offline_pipeline.hpp"
+#include "components/swivel/offline/output_folder.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "components/common/program.hpp"
-#include "components/swivel/offline_pipeline.hpp"
+#include "components/swivel/offline/offline_pipeline.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
 

@@ -7,10 +7,10 @@
 
 #include "components/common/calibration_file.hpp"
 #include "components/common/program.hpp"
-#include "components/swivel/offline_pipeline.hpp"
-#include "components/swivel/roll.hpp"
-#include "components/swivel/scan.hpp"
-#include "components/swivel/sweep_evaluator.hpp"
+#include "components/swivel/live/roll.hpp"
+#include "components/swivel/live/scan.hpp"
+#include "components/swivel/offline/offline_pipeline.hpp"
+#include "components/swivel/report/sweep_evaluator.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {

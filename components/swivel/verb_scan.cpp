@@ -3,8 +3,8 @@
 #include <CLI/Formatter.hpp>
 #include <memory>
 
-#include "components/swivel/roll.hpp"
-#include "components/swivel/scan.hpp"
+#include "components/swivel/live/roll.hpp"
+#include "components/swivel/live/scan.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {

@@ -9,8 +9,8 @@
 
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
-#include "components/swivel/participants.hpp"
-#include "components/swivel/roll.hpp"
+#include "components/swivel/live/participants.hpp"
+#include "components/swivel/live/roll.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
-#include "components/swivel/participants.hpp"
+#include "components/swivel/live/participants.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {

@@ -2,8 +2,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "components/swivel/attitude_charts.hpp"
-#include "components/swivel/sweep_charts.hpp"
+#include "components/swivel/pictures/attitude_charts.hpp"
+#include "components/swivel/pictures/sweep_charts.hpp"
 #include "scratch_folder.hpp"
 
 namespace swivel {

@@ -1,4 +1,4 @@
-#include "components/swivel/cloud_files.hpp"
+#include "components/swivel/offline/cloud_files.hpp"
 
 #include <gmock/gmock.h>
 #include <pcl/io/pcd_io.h>

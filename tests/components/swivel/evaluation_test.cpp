@@ -1,4 +1,4 @@
-#include "components/swivel/evaluation.hpp"
+#include "components/swivel/report/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "calibration/transform_cloud.hpp"
-#include "components/swivel/surfaces.hpp"
+#include "components/swivel/report/surfaces.hpp"
 
 namespace swivel {
 namespace {

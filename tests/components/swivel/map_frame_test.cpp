@@ -1,4 +1,4 @@
-#include "components/swivel/map_frame.hpp"
+#include "components/swivel/pictures/map_frame.hpp"
 
 #include <gtest/gtest.h>
 

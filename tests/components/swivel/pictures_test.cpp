@@ -1,4 +1,4 @@
-#include "components/swivel/pictures.hpp"
+#include "components/swivel/pictures/pictures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "components/swivel/child_process.hpp"
+#include "components/swivel/live/child_process.hpp"
 #include "scratch_folder.hpp"
 #include "tests/components/dds/test_participant.hpp"
 

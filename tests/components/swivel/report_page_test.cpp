@@ -1,4 +1,4 @@
-#include "components/swivel/report_page.hpp"
+#include "components/swivel/report/report_page.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,0 +1,54 @@
+// Evaluates sweeps as they come: looks closely at each, and at the end at all together. Writes
+// pictures and report.html into a folder, the numbers into its report.json.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "components/common/rig_file.hpp"
+#include "components/swivel/offline/output_folder.hpp"
+#include "components/swivel/offline/processed_sweep.hpp"
+#include "components/swivel/pictures/pictures.hpp"
+#include "components/swivel/report/attitude_truth.hpp"
+#include "components/swivel/report/findings.hpp"
+#include "components/swivel/report/report_page.hpp"
+#include "components/swivel/report/surfaces.hpp"
+
+namespace swivel {
+
+class SweepEvaluator {
+ public:
+  // The folder must be there. title: what was scanned.
+  SweepEvaluator(std::string folder, std::string title, const RigFile& rig, double room_yaw_deg);
+
+  // Draws the sweep's pictures. Returns what belongs into its report.
+  nlohmann::ordered_json add(const ProcessedSweep& processed);
+
+  // After the last sweep, before output.finish().
+  void finish(const std::optional<AttitudeTruth>& truth, OutputFolder& output);
+
+ private:
+  void draw(const ProcessedSweep& processed, const std::vector<Surface>& surfaces);
+  void draw_plate(const ProcessedSweep& processed, const PictureCaption& caption);
+  void judge_errors(const std::optional<AttitudeTruth>& truth);
+  std::string picture(const std::string& kind, std::size_t sweep) const;
+  std::vector<const SweepFacts*> sweeps_to_show() const;
+  std::vector<Figure> figures_of_all() const;
+  std::vector<Figure> figures_of_sweeps() const;
+  std::string label_of(const SweepFacts& sweep) const;
+  PageHead page_head() const;
+
+  std::string folder_;
+  std::string title_;
+  RigFile rig_;
+  double room_yaw_rad_;
+  Evaluation evaluation_;
+  std::vector<std::vector<Plane>> walls_;        // a sweep each
+  std::vector<std::uint32_t> device_stamps_ms_;  // likewise
+  std::set<std::string> drawn_;                  // paths
+};
+
+}  // namespace swivel
