@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ostream>
 #include <thread>
@@ -13,6 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::GrblDouble;
 using test::GrblDoubleOptions;
+using test::IdealTurn;
 using test::SequencerRig;
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -61,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
         TroubleCase{"HardLimit", [](GrblDouble& peer) { peer.raise_alarm(1); }, "ALARM:1", 300},
         TroubleCase{"Reset", [](GrblDouble& peer) { peer.reset_itself(); }, "was reset", 300},
         TroubleCase{"StopsShort", [](GrblDouble& peer) { peer.stop_short(); }, "says Idle", 300},
-        TroubleCase{"Silence", [](GrblDouble& peer) { peer.fall_silent(); }, "silent", 500}),
+        TroubleCase{"Silence", [](GrblDouble& peer) { peer.fall_silent(); }, "silent", 1300}),
     [](const auto& test) { return test.param.name; });
 
 TEST(SequencerFaults, AMotorThatDoesNotCancelIsCut) {
@@ -72,9 +74,11 @@ TEST(SequencerFaults, AMotorThatDoesNotCancelIsCut) {
   rig.peer.deafen_to_cancel();
   rig.cancel();
   ASSERT_TRUE(rig.await(msg::PHASE_FAULT));
-  EXPECT_THAT(rig.peer.lines(), Contains("0x18"));
-  EXPECT_NE(rig.peer.turns().back().cut_ns, 0);
   ASSERT_TRUE(rig.await(msg::PHASE_IDLE, 2));
+  EXPECT_THAT(rig.peer.lines(), Contains("0x18"));
+  const std::vector<IdealTurn> turns = rig.peer.turns();
+  const auto was_cut = [](const IdealTurn& turn) { return turn.cut_ns != 0; };
+  EXPECT_EQ(std::count_if(turns.begin(), turns.end(), was_cut), 1);
   rig.ask(1, 1);
   ASSERT_TRUE(rig.await(msg::PHASE_IDLE, 3));
   EXPECT_EQ(rig.sequencer.health().sweeps_done, 1U);
@@ -103,7 +107,7 @@ TEST(SequencerFaults, AHomingThatFailsIsTriedAgain) {
 
 TEST(SequencerFaults, ASpeedThatTheMotorNeverReachesGivesNoWindow) {
   GrblDoubleOptions sluggish;
-  sluggish.turn_delay_s = 0.3;  // longer than the settling time
+  sluggish.turn_delay_s = 0.6;  // longer than the settling time
   SequencerRig rig(sluggish, [](SequencerOptions& options) { options.longest_retry_s = 0.01; });
   ASSERT_TRUE(rig.ready());
   rig.ask(7, 1);

@@ -18,10 +18,11 @@ SequencerOptions quick_options(const GrblDouble& peer) {
   SequencerOptions options;
   options.stepper.address = peer.address();
   options.stepper.limits = {-75.0, 330.0, 30.0};
-  options.stepper.banner_timeout = 200ms;
-  options.stepper.status_timeout = 200ms;
+  options.stepper.banner_timeout = 1s;
+  options.stepper.status_timeout = 1s;  // as long as a busy machine may keep the double waiting
   options.sweep.sweep_angle_deg = 4.5;
   options.sweep.lines_of_mode = {{1, 1}, {2, 2}, {3, 4}, {4, 5}, {5, 8}, {6, 10}, {7, 16}};
+  options.sweep.settle_s = 0.3;  // and here the sequencer
   options.sweep.return_speed_deg_s = 900.0;
   options.sweep.stand_s = 0.01;
   options.watch_interval_s = 0.05;
