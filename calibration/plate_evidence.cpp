@@ -3,7 +3,7 @@
 namespace swivel {
 namespace {
 
-constexpr double kCornerZone_m = 0.008;  // two edges nearer than this make a corner
+constexpr double kCornerZone_m = 0.006;  // two edges nearer than this make a corner
 constexpr double kSure_m = 0.007;        // beams further from the outline are sure of their side
 constexpr double kOutlier_m = 0.08;      // off the plate: not measured on it
 constexpr double kClip = 12.0;           // of a log-likelihood ratio

@@ -13,7 +13,7 @@ namespace {
 // Beams nearer to the outline than this say neither inside nor outside: the spot is 4 mm, the
 // lines of the fastest mode lie 6 mm apart.
 constexpr double kInsideMarginM = 0.004;
-constexpr double kOutsideMarginM = 0.006;
+constexpr double kOutsideMarginM = 0.004;  // of a plate as large as its spot may make it
 
 // The outline is searched for about a first guess, then about the best place found.
 struct Search {
@@ -236,9 +236,11 @@ std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>
 std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
                            double beta_rad) {
   const PlateOutline outline(plate, beta_rad);
+  const Known growth_m = plate.shape.growth_m;
+  const double margin_m = kOutsideMarginM + growth_m.value + 3.0 * growth_m.sigma;
   CellGrid grid(plate, beta_rad);
   for (const PlateBeam& beam : beams) {
-    if (outline.inside_m(beam.x_m, beam.y_m) < -kOutsideMarginM) {
+    if (outline.inside_m(beam.x_m, beam.y_m) < -margin_m) {
       grid.cell_of(beam).add(beam.in_ring);
     }
   }
