@@ -66,16 +66,21 @@ Surfaces lasting_surfaces(const std::vector<AlphaSweep>& sweeps) {
   return surfaces;
 }
 
+// Taken about one of them: those of a wall at the rig's other side lie about 180 deg, on either
+// side of where angles wrap, and their plain median would be 0.
 double median_error_rad(const std::vector<AlphaSweep>& sweeps, const Surface& surface,
                         std::size_t side, const AlphaOptions& options) {
-  std::vector<double> errors_rad;
+  std::optional<double> first_rad;
+  std::vector<double> off_rad;
   for (std::size_t sweep = 0; sweep < sweeps.size(); ++sweep) {
     const Plane* const plane = surface.by_sweep[sweep];
     if (plane == nullptr) continue;
-    errors_rad.push_back(
-        wall_error_rad(*plane, side, sweeps[sweep].beta_rad, options.initial_alpha_rad, options));
+    const double error_rad =
+        wall_error_rad(*plane, side, sweeps[sweep].beta_rad, options.initial_alpha_rad, options);
+    if (!first_rad) first_rad = error_rad;
+    off_rad.push_back(turned(error_rad - *first_rad));
   }
-  return median(errors_rad);
+  return turned(*first_rad + median(off_rad));
 }
 
 double median_extent_m2(const Surface& surface) {

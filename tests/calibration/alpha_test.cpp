@@ -4,73 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+
+#include "tests/calibration/room_sweeps.hpp"
 
 namespace swivel {
 namespace {
-
-constexpr double kAlphaRad = rad_from_deg(29.36);
-
-Plane wall(double azimuth_rad, std::size_t points) {
-  Plane plane;
-  plane.normal = {std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0};
-  plane.distance_m = 2.0;
-  plane.rms_m = 0.01;
-  plane.points = points;
-  plane.length_m = 4.0;
-  plane.height_m = 2.5;
-  plane.azimuth_sigma_rad = rad_from_deg(0.005);
-  return plane;
-}
-
-Plane turned(Plane plane, double angle_rad) {
-  const double azimuth_rad = plane.azimuth_rad() + angle_rad;
-  plane.normal = {std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0};
-  return plane;
-}
-
-void turn_wall(std::vector<AlphaSweep>& sweeps, std::size_t index, double angle_rad) {
-  for (AlphaSweep& sweep : sweeps) sweep.walls[index] = turned(sweep.walls[index], angle_rad);
-}
-
-std::string remarks_of(const AlphaFit& fit) {
-  std::string all;
-  for (const std::string& remark : fit.remarks) all += remark + "\n";
-  return all;
-}
-
-// What a sweep sees that starts phi_offset away from the front, with the plate at kAlphaRad, in
-// a room that stands at yaw_rad.
-AlphaSweep perfect_sweep(double phi_offset_rad, double yaw_rad = 0.0) {
-  AlphaSweep sweep;
-  sweep.beta_rad = kAlphaRad - phi_offset_rad;
-  sweep.beta_sigma_rad = rad_from_deg(0.13);
-  for (int side = 0; side < 4; ++side) {
-    sweep.walls.push_back(wall(yaw_rad + side * kPi / 2 - phi_offset_rad, 5000));
-    sweep.walls.back().distance_m = 2.0 + side;
-  }
-  return sweep;
-}
-
-std::vector<AlphaSweep> perfect_sweeps(double yaw_rad = 0.0) {
-  return {perfect_sweep(rad_from_deg(1.2), yaw_rad), perfect_sweep(rad_from_deg(-3.4), yaw_rad),
-          perfect_sweep(rad_from_deg(4.9), yaw_rad), perfect_sweep(0.0, yaw_rad)};
-}
-
-AlphaFit fitted(const std::vector<AlphaSweep>& sweeps, const AlphaOptions& options = {}) {
-  const AlphaResult result = fit_alpha(sweeps, options);
-  EXPECT_TRUE(result.fit) << result.reason;
-  return result.fit.value_or(AlphaFit());
-}
-
-void expect_refused(const std::vector<AlphaSweep>& sweeps, const std::vector<std::string>& words,
-                    const AlphaOptions& options = {}) {
-  const AlphaResult result = fit_alpha(sweeps, options);
-  EXPECT_FALSE(result.fit);
-  for (const std::string& word : words) {
-    EXPECT_NE(result.reason.find(word), std::string::npos) << result.reason;
-  }
-}
 
 TEST(Alpha, IsExactWithoutNoise) {
   const AlphaFit fit = fitted(perfect_sweeps());
@@ -81,6 +19,16 @@ TEST(Alpha, IsExactWithoutNoise) {
   EXPECT_GT(fit.iterations, 0);
   // What the sweeps' own sigmas say, however well they happen to agree.
   EXPECT_NEAR(fit.sigma_rad, rad_from_deg(0.13) / 2, rad_from_deg(0.001));
+}
+
+// The bench found it: errors of a wall at the other side lay on both sides of 180 deg, and the mean
+// of the middle two was 0.
+TEST(Alpha, FourSweepsAboutTheDrawnAngleAreNotTurnedRound) {
+  std::vector<AlphaSweep> sweeps = perfect_sweeps();
+  for (std::size_t i = 0; i < 4; ++i) sweeps[i].beta_rad += rad_from_deg(i % 2 == 0 ? 0.05 : -0.05);
+  AlphaOptions options;
+  options.initial_alpha_rad = kAlphaRad;
+  EXPECT_NEAR(fitted(sweeps, options).alpha_rad, kAlphaRad, 1e-9);
 }
 
 TEST(Alpha, WhereTheSearchStartsDoesNotMatter) {
@@ -232,120 +180,6 @@ TEST(Alpha, TwoWallsThatDisagreeGiveASigmaOfHalfTheirAngle) {
   const AlphaFit fit = fitted(sweeps);
   EXPECT_NEAR(fit.alpha_rad, kAlphaRad - rad_from_deg(0.5), rad_from_deg(0.1));
   EXPECT_GT(fit.sigma_rad, rad_from_deg(0.4));
-}
-
-std::vector<AlphaSweep> noisy_sweeps(std::size_t count, double sigma_deg, std::mt19937& random) {
-  std::normal_distribution<double> beta_noise_deg(0.0, sigma_deg);
-  std::normal_distribution<double> wall_noise_deg(0.0, 0.02);
-  std::uniform_real_distribution<double> offset_deg(-5.0, 5.0);
-  std::vector<AlphaSweep> sweeps;
-  for (std::size_t sweep = 0; sweep < count; ++sweep) {
-    sweeps.push_back(perfect_sweep(rad_from_deg(offset_deg(random))));
-    sweeps.back().beta_rad += rad_from_deg(beta_noise_deg(random));
-    sweeps.back().beta_sigma_rad = rad_from_deg(sigma_deg);
-    for (Plane& plane : sweeps.back().walls) {
-      plane = turned(plane, rad_from_deg(wall_noise_deg(random)));
-      plane.azimuth_sigma_rad = rad_from_deg(0.02);
-    }
-  }
-  return sweeps;
-}
-
-TEST(Alpha, SigmaIsHonestForFewSweepsAndForMany) {
-  for (const std::size_t count : {1U, 2U, 3U, 5U, 20U}) {
-    AlphaOptions options;
-    options.least_sweeps = 1;
-    std::mt19937 random(static_cast<unsigned>(count));
-    double squares = 0.0;
-    int within = 0;
-    int doubted = 0;
-    constexpr int kRuns = 300;
-    for (int run = 0; run < kRuns; ++run) {
-      const AlphaFit fit = fitted(noisy_sweeps(count, 0.08, random), options);
-      const double errors_in_sigmas = (fit.alpha_rad - kAlphaRad) / fit.sigma_rad;
-      squares += errors_in_sigmas * errors_in_sigmas;
-      if (std::abs(errors_in_sigmas) < 1.0) ++within;
-      if (!fit.model_holds) ++doubted;
-    }
-    EXPECT_GT(std::sqrt(squares / kRuns), 0.8) << count;
-    EXPECT_LT(std::sqrt(squares / kRuns), 1.2) << count;
-    EXPECT_GT(within, 0.60 * kRuns) << count;
-    EXPECT_LT(within, 0.82 * kRuns) << count;
-    EXPECT_LE(doubted, 3) << count;
-  }
-}
-
-TEST(Alpha, ChiSquareIsAboutItsDegreesOfFreedomWhenTheSigmasAreTrue) {
-  std::mt19937 random(9);
-  double sum = 0.0;
-  for (int run = 0; run < 100; ++run) {
-    const AlphaFit fit = fitted(noisy_sweeps(5, 0.08, random));
-    EXPECT_EQ(fit.degrees_of_freedom, 16U);  // 20 sightings, 4 angles
-    sum += fit.chi_square;
-  }
-  EXPECT_NEAR(sum / 100, 16.0, 1.7);  // 3 sigmas of the mean
-}
-
-TEST(Alpha, ScatterAboveTheSweepsOwnSigmasWidensSigmaAndIsSaid) {
-  std::mt19937 random(7);
-  auto sweeps = noisy_sweeps(20, 0.3, random);
-  for (AlphaSweep& sweep : sweeps) sweep.beta_sigma_rad = rad_from_deg(0.15);
-  const AlphaFit fit = fitted(sweeps);
-  EXPECT_GT(fit.sigma_rad, rad_from_deg(0.3 / std::sqrt(20.0) * 0.7));
-  EXPECT_FALSE(fit.model_holds);
-  EXPECT_NE(remarks_of(fit).find("plate's azimuths scatter"), std::string::npos);
-}
-
-TEST(Alpha, WallsThatMoveBetweenTheSweepsAreSaid) {
-  std::mt19937 random(8);
-  auto sweeps = noisy_sweeps(20, 0.08, random);
-  for (AlphaSweep& sweep : sweeps) {
-    for (Plane& plane : sweep.walls) plane.azimuth_sigma_rad = rad_from_deg(0.01);
-  }
-  const AlphaFit fit = fitted(sweeps);
-  EXPECT_FALSE(fit.model_holds);
-  EXPECT_NE(remarks_of(fit).find("walls' angles scatter"), std::string::npos) << remarks_of(fit);
-}
-
-// A sharp sweep counts for more: five of mode 1 and one of mode 7.
-TEST(Alpha, SweepsOfAllModesMixByTheirSigmas) {
-  std::mt19937 random(3);
-  double squares = 0.0;
-  double foretold_rad = 0.0;
-  constexpr int kRuns = 200;
-  for (int run = 0; run < kRuns; ++run) {
-    auto sweeps = noisy_sweeps(5, 0.08, random);
-    sweeps.push_back(noisy_sweeps(1, 0.016, random)[0]);
-    const AlphaFit fit = fitted(sweeps);
-    squares += std::pow(fit.alpha_rad - kAlphaRad, 2);
-    foretold_rad = fit.sweeps_sigma_rad;
-  }
-  EXPECT_LT(std::sqrt(squares / kRuns), rad_from_deg(0.021));
-  EXPECT_LT(foretold_rad, rad_from_deg(0.025));
-}
-
-TEST(Alpha, WallsOutOfSquareLimitSigmaHoweverManySweeps) {
-  std::vector<AlphaSweep> sweeps(400, perfect_sweep(0.01));
-  for (const std::size_t side : {0U, 1U, 2U, 3U}) {
-    turn_wall(sweeps, side, rad_from_deg(side % 2 == 0 ? 0.06 : -0.06));
-  }
-  const AlphaFit fit = fitted(sweeps);
-  EXPECT_GT(fit.sigma_rad, rad_from_deg(0.02));
-  EXPECT_FALSE(more_sweeps_for(fit, rad_from_deg(0.02)));
-}
-
-TEST(Alpha, AsManyMoreSweepsAsItSaysBringTheWantedSigma) {
-  const std::vector<AlphaSweep> few(5, perfect_sweep(0.01));
-  const AlphaFit fit = fitted(few);
-  for (const double wanted_deg : {0.05, 0.02, 0.011}) {
-    const auto more = more_sweeps_for(fit, rad_from_deg(wanted_deg));
-    ASSERT_TRUE(more);
-    const std::vector<AlphaSweep> enough(5 + *more, perfect_sweep(0.01));
-    const std::vector<AlphaSweep> too_few(4 + *more, perfect_sweep(0.01));
-    EXPECT_LE(fitted(enough).sigma_rad, rad_from_deg(wanted_deg) * (1 + 1e-9));
-    EXPECT_GT(fitted(too_few).sigma_rad, rad_from_deg(wanted_deg));
-  }
-  EXPECT_EQ(more_sweeps_for(fit, fit.sigma_rad), 0U);
 }
 
 TEST(Alpha, TooFewSweepsAreRefusedUnlessFewerAreAllowed) {
