@@ -15,6 +15,8 @@ constexpr double kWidestSigma_rad = rad_from_deg(1.0);
 constexpr double kAllowedCorrection_rad = rad_from_deg(4.0);  // of the first, coarse outline
 constexpr double kWorstMisfit = 5.0;  // with a plate 0.05 to 1.6; 100 where every edge is elsewhere
 
+constexpr double kBeside_m = 0.005;  // the edges are soft
+
 // Where the beams that measured in the ring are, on the mean.
 struct InRing {
   std::size_t beams = 0;
@@ -43,7 +45,8 @@ AttitudeEstimate refusal(AttitudeVerdict verdict, const std::string& reason) {
 }
 
 // What speaks against a fit; empty if nothing does.
-std::string doubts(const PlateFit& fit, const PlateView& view) {
+std::string doubts(const PlateFit& fit, const PlateView& view, const PlateGeometry& plate,
+                   const std::vector<PlateBeam>& beams) {
   const double correction_rad = std::abs(fit.beta_rad - view.outline_beta_rad);
   if (correction_rad > kAllowedCorrection_rad)
     return in_words("the outline's edges and its area are ", spoken_deg(correction_rad),
@@ -51,7 +54,7 @@ std::string doubts(const PlateFit& fit, const PlateView& view) {
   if (fit.misfit > kWorstMisfit)
     return in_words("the edges seen are not those of the drawn plate (misfit ", fit.misfit,
                     ", at most ", kWorstMisfit, "): check the plate's measures in the rig file");
-  return {};
+  return foreign_object(plate, beams, fit.beta_rad, kBeside_m + fit.shape.growth_m.value);
 }
 
 }  // namespace
@@ -73,7 +76,7 @@ AttitudeEstimate estimate_by_plate_outline(const OrganisedCloud& cloud, const Pl
     return refusal(AttitudeVerdict::kTooFewPoints,
                    in_words("too few beams at the plate's edges: ", fit->edge_beams,
                             ", which leaves ", spoken_deg(fit->beta_sigma_rad), " deg of doubt"));
-  if (const std::string words = doubts(*fit, view); !words.empty())
+  if (const std::string words = doubts(*fit, view, plate, beams); !words.empty())
     return refusal(AttitudeVerdict::kForeignObject, words);
 
   AttitudeEstimate estimate;

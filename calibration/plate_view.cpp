@@ -13,7 +13,6 @@ namespace {
 // Beams nearer to the outline than this say neither inside nor outside: the spot is 4 mm, the
 // lines of the fastest mode lie 6 mm apart.
 constexpr double kInsideMarginM = 0.004;
-constexpr double kOutsideMarginM = 0.004;  // of a plate as large as its spot may make it
 
 // The outline is searched for about a first guess, then about the best place found.
 struct Search {
@@ -209,7 +208,7 @@ std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>
                         double beta_rad) {
   const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
-  for (const PlateBeam& beam : beams) {
+  for (const PlateBeam& beam : some_of(beams, kTalliedBeams)) {
     if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMarginM) {
       grid.cell_of(beam).add(beam.in_ring);
     }
@@ -228,29 +227,6 @@ std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>
     return in_words("a part of the plate is hidden: at ", CellGrid::azimuth_deg(index),
                     " deg from its middle ", cell.hits, " of ", cell.beams, " beams met it, where ",
                     std::round(expected), " would; clear what stands over the plate");
-  }
-  return {};
-}
-
-// Cells outside of the plate in which something was seen.
-std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
-                           double beta_rad) {
-  const PlateOutline outline(plate, beta_rad);
-  const Known growth_m = plate.shape.growth_m;
-  const double margin_m = kOutsideMarginM + growth_m.value + 3.0 * growth_m.sigma;
-  CellGrid grid(plate, beta_rad);
-  for (const PlateBeam& beam : beams) {
-    if (outline.inside_m(beam.x_m, beam.y_m) < -margin_m) {
-      grid.cell_of(beam).add(beam.in_ring);
-    }
-  }
-  for (std::size_t index = 0; index < grid.cells().size(); ++index) {
-    const Tally& cell = grid.cells()[index];
-    const double limit = 3.0 + kForeignShare * static_cast<double>(cell.beams);
-    if (static_cast<double>(cell.hits) <= limit) continue;
-    return in_words("something else is in the ring: ", cell.hits, " of ", cell.beams,
-                    " beams met it at ", CellGrid::azimuth_deg(index),
-                    " deg from the plate's middle; clear cables and the like away");
   }
   return {};
 }
@@ -293,12 +269,29 @@ PlateView judge_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
   if (tally.beams < kLeastBeams || view.occupancy < kEnoughPlate) {
     return say(AttitudeVerdict::kTooFewPoints, "too few points on the plate: " + seen);
   }
-  const std::vector<PlateBeam> some = some_of(beams, kTalliedBeams);
-  const std::string foreign = foreign_object(plate, some, view.outline_beta_rad);
-  if (!foreign.empty()) return say(AttitudeVerdict::kForeignObject, foreign);
-  const std::string hidden = hidden_part(plate, some, view.outline_beta_rad);
+  const std::string hidden = hidden_part(plate, beams, view.outline_beta_rad);
   if (!hidden.empty()) return say(AttitudeVerdict::kForeignObject, hidden);
   return say(AttitudeVerdict::kGood, "");
+}
+
+std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
+                           double beta_rad, double margin_m) {
+  const PlateOutline outline(plate, beta_rad);
+  CellGrid grid(plate, beta_rad);
+  for (const PlateBeam& beam : some_of(beams, kTalliedBeams)) {
+    if (outline.inside_m(beam.x_m, beam.y_m) < -margin_m) {
+      grid.cell_of(beam).add(beam.in_ring);
+    }
+  }
+  for (std::size_t index = 0; index < grid.cells().size(); ++index) {
+    const Tally& cell = grid.cells()[index];
+    const double limit = 3.0 + kForeignShare * static_cast<double>(cell.beams);
+    if (static_cast<double>(cell.hits) <= limit) continue;
+    return in_words("something else is in the ring: ", cell.hits, " of ", cell.beams,
+                    " beams met it at ", CellGrid::azimuth_deg(index),
+                    " deg from the plate's middle; clear cables and the like away");
+  }
+  return {};
 }
 
 }  // namespace swivel

@@ -33,8 +33,13 @@ struct PlateView {
   double line_step_rad = 0.0;     // azimuth from line to line
 };
 
-// What stands at azimuth beta: the plate, whole and alone, or else what is wrong.
+// What stands at azimuth beta: the plate, whole, or else what is wrong.
 PlateView judge_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
                       const std::vector<PlateBeam>& beams, double beta_rad);
+
+// What else was seen in the ring, further than the margin from a plate at azimuth beta; empty if
+// nothing was.
+std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBeam>& beams,
+                           double beta_rad, double margin_m);
 
 }  // namespace swivel

@@ -11,6 +11,7 @@
 namespace swivel {
 namespace {
 
+constexpr double kBesideM = 0.006;  // from the outline: the spot is 4 mm wide
 constexpr std::size_t kLeastPointsInRing = 50;
 
 // The mean and the outline are two views of one plate; further apart than this and than four
@@ -88,8 +89,11 @@ AttitudeEstimate estimate_by_ring_mean(const OrganisedCloud& cloud, const PlateG
   estimate.residual_m = rms_height_m(ring, height_m);
   const Eigen::Vector3d centre = mean_of(ring.points);
   const double beta_rad = std::atan2(centre.y(), centre.x());
-  const PlateView view = judge_plate(cloud, plate, beams_at_plate(cloud, plate, rig), beta_rad);
+  const std::vector<PlateBeam> beams = beams_at_plate(cloud, plate, rig);
+  const PlateView view = judge_plate(cloud, plate, beams, beta_rad);
   if (view.verdict != AttitudeVerdict::kGood) return refusal(estimate, view.verdict, view.reason);
+  const std::string foreign = foreign_object(plate, beams, view.outline_beta_rad, kBesideM);
+  if (!foreign.empty()) return refusal(estimate, AttitudeVerdict::kForeignObject, foreign);
 
   const double beta_sigma_rad = sigma_rad(ring, beta_rad, view);
   const double apart_rad = std::abs(beta_rad - view.outline_beta_rad);
