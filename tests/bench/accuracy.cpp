@@ -5,29 +5,104 @@
 #include <atomic>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <thread>
 
+#include "calibration/planes.hpp"
+#include "calibration/plate_learning.hpp"
 #include "tests/calibration/yuans_rig.hpp"
 
 namespace swivel {
 namespace {
 
-BenchSweepOptions sweep_of(const TrialPlan& plan, int sweep) {
-  const auto run = plan.seed * 100 + static_cast<std::uint64_t>(plan.mode);
-  return drawn_sweep(plan.tier, plan.mode, run * 100'000 + static_cast<std::uint64_t>(sweep));
+constexpr std::size_t kWallsLookedFor = 8;
+constexpr std::uint64_t kCalibrationRun = 50;  // its sweeps are not those of the trials
+
+// The rig is the same one in all of them.
+BenchSweepOptions sweep_of(Tier tier, int mode, std::uint64_t run, std::size_t sweep) {
+  BenchSweepOptions options = drawn_sweep(tier, mode, run * 100'000 + sweep);
+  options.world.plate.alpha_deg = deg_from_rad(PlateGeometry().alpha_rad);
+  return options;
+}
+
+BenchSweepOptions sweep_of(const TrialPlan& plan, std::size_t sweep) {
+  return sweep_of(plan.tier, plan.mode, plan.seed * 100 + static_cast<std::uint64_t>(plan.mode),
+                  sweep);
+}
+
+BenchSweepOptions sweep_of(const CalibrationPlan& plan, std::size_t sweep) {
+  const std::uint64_t run =
+      plan.seed * 100 + kCalibrationRun + static_cast<std::uint64_t>(plan.mode);
+  BenchSweepOptions options = sweep_of(plan.tier, plan.mode, run, sweep);
+  options.world.room = room_of(plan.room);
+  return options;
 }
 
 AttitudeTrial tried(const NamedEstimator& estimator, const BenchSweep& sweep) {
-  const AttitudeEstimate estimate = estimator.estimate(sweep.cloud, PlateGeometry());
+  const AttitudeEstimate estimate = estimator.estimate(sweep.cloud, estimator.plate);
   if (estimate.verdict != AttitudeVerdict::kGood) return {};
-  return {true, std::remainder(estimate.beta_rad - sweep.beta_rad, 2 * kPi),
-          estimate.beta_sigma_rad};
+  const double phi_rad = phi_offset_rad(estimator.plate.alpha_rad, estimate.beta_rad);
+  return {true, std::remainder(phi_rad - sweep.phi_start_rad, 2 * kPi),
+          std::hypot(estimate.beta_sigma_rad, estimator.alpha_sigma_rad)};
+}
+
+void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  const auto worker = [&] {
+    for (std::size_t index = next++; index < count; index = next++) work(index);
+  };
+  std::vector<std::thread> workers;
+  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
+    workers.emplace_back(worker);
+  }
+  for (std::thread& each : workers) each.join();
+}
+
+// What a sweep brings to a calibration: its walls once, its plate by each estimator.
+struct CalibrationSweep {
+  std::vector<Plane> walls;
+  std::vector<AttitudeEstimate> estimates;
+};
+
+CalibrationSweep looked_at(const BenchSweep& sweep, const std::vector<NamedEstimator>& estimators) {
+  CalibrationSweep seen{find_walls(sweep.cloud, kWallsLookedFor), {}};
+  for (const NamedEstimator& estimator : estimators) {
+    seen.estimates.push_back(estimator.estimate(sweep.cloud, estimator.plate));
+  }
+  return seen;
+}
+
+Calibrated calibrated(const NamedEstimator& drawn, std::size_t which,
+                      const std::vector<CalibrationSweep>& sweeps) {
+  std::vector<AlphaSweep> told;
+  std::vector<PlateFit> fits;
+  for (const CalibrationSweep& sweep : sweeps) {
+    const AttitudeEstimate& estimate = sweep.estimates[which];
+    if (estimate.verdict != AttitudeVerdict::kGood) continue;
+    told.push_back({estimate.beta_rad, estimate.beta_sigma_rad, sweep.walls, {}});
+    if (estimate.fit) fits.push_back(*estimate.fit);
+  }
+  Calibrated found{drawn, {}};
+  if (!fits.empty()) {
+    const LearnedPlate learned = learn_plate(fits, drawn.plate.shape);
+    found.estimator.plate.shape = learned.shape;
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      told[i].beta_rad = learned.betas_rad[i].value;
+      told[i].beta_sigma_rad = learned.betas_rad[i].sigma;
+    }
+  }
+  found.alpha = fit_alpha(told);
+  if (found.alpha.fit) {
+    found.estimator.plate.alpha_rad = found.alpha.fit->alpha_rad;
+    found.estimator.alpha_sigma_rad = found.alpha.fit->sigma_rad;
+  }
+  return found;
 }
 
 // Of the processor: other programs do not count.
 double time_ms(const NamedEstimator& estimator, const BenchSweep& sweep) {
   const std::clock_t start = std::clock();
-  (void)estimator.estimate(sweep.cloud, PlateGeometry());
+  (void)estimator.estimate(sweep.cloud, estimator.plate);
   return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
@@ -37,7 +112,7 @@ std::vector<NamedEstimator> known_estimators() {
   std::vector<NamedEstimator> known;
   for (const char* name : {"ring_mean", "plate_outline"}) {
     if (const auto estimator = attitude_estimator(name, yuans_rig())) {
-      known.push_back({name, *estimator});
+      known.push_back({name, *estimator, {}, 0.0});
     }
   }
   return known;
@@ -64,26 +139,31 @@ AccuracySummary summarise(const std::vector<AttitudeTrial>& trials) {
   return summary;
 }
 
+std::vector<Calibrated> calibrate(const CalibrationPlan& plan,
+                                  const std::vector<NamedEstimator>& estimators) {
+  std::vector<CalibrationSweep> sweeps(static_cast<std::size_t>(plan.sweeps));
+  on_all_cores(sweeps.size(), [&](std::size_t index) {
+    sweeps[index] = looked_at(make_bench_sweep(sweep_of(plan, index)), estimators);
+  });
+  std::vector<Calibrated> all;
+  for (std::size_t each = 0; each < estimators.size(); ++each) {
+    all.push_back(calibrated(estimators[each], each, sweeps));
+  }
+  return all;
+}
+
 std::vector<std::vector<AttitudeTrial>> run_trials(const TrialPlan& plan,
                                                    const std::vector<NamedEstimator>& estimators) {
   std::vector<std::vector<AttitudeTrial>> trials(
       estimators.size(), std::vector<AttitudeTrial>(static_cast<std::size_t>(plan.sweeps)));
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int index = next++; index < plan.sweeps; index = next++) {
-      BenchSweepOptions options = sweep_of(plan, index);
-      options.plate_beams_only = true;
-      const BenchSweep sweep = make_bench_sweep(options);
-      for (std::size_t each = 0; each < estimators.size(); ++each) {
-        trials[each][static_cast<std::size_t>(index)] = tried(estimators[each], sweep);
-      }
+  on_all_cores(static_cast<std::size_t>(plan.sweeps), [&](std::size_t index) {
+    BenchSweepOptions options = sweep_of(plan, index);
+    options.plate_beams_only = true;
+    const BenchSweep sweep = make_bench_sweep(options);
+    for (std::size_t each = 0; each < estimators.size(); ++each) {
+      trials[each][index] = tried(estimators[each], sweep);
     }
-  };
-  std::vector<std::thread> workers;
-  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
-    workers.emplace_back(work);
-  }
-  for (std::thread& worker : workers) worker.join();
+  });
   return trials;
 }
 

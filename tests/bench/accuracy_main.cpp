@@ -46,8 +46,11 @@ const char* in_words(Tier tier) {
   return "";
 }
 
-void print_head(Tier tier) {
+void print_tier(Tier tier) {
   std::printf("\nTier %s: %s\n", name_of(tier), in_words(tier));
+}
+
+void print_head(Tier tier) {
   std::printf("%4s %-14s %7s %7s %7s %7s %7s %8s %10s", "mode", "estimator", "rms", "max", "mean",
               "/sigma", "refused", "ms", "10 m, mm");
   std::printf(tier == Tier::kReal ? "  study: bound, ring    aim\n" : "\n");
@@ -85,16 +88,69 @@ void print_row(const TrialPlan& plan, const std::string& name, const AccuracySum
   std::fflush(stdout);
 }
 
+void print_alpha(const Calibrated& calibrated) {
+  const std::optional<AlphaFit>& fit = calibrated.alpha.fit;
+  if (!fit) {
+    std::printf("%-14s no alpha: %s\n", calibrated.estimator.name.c_str(),
+                calibrated.alpha.reason.c_str());
+    return;
+  }
+  const double error_rad = fit->alpha_rad - PlateGeometry().alpha_rad;
+  std::printf("%-14s off by %+.4f deg, said +- %.4f, from %zu sweeps\n",
+              calibrated.estimator.name.c_str(), deg_from_rad(error_rad),
+              deg_from_rad(fit->sigma_rad), fit->sweeps_used);
+}
+
+// The estimators as their rig is used: with the plate and the alpha that a calibration found.
+std::vector<NamedEstimator> calibrated_estimators(Tier tier, std::uint64_t seed) {
+  CalibrationPlan plan;
+  plan.tier = tier;
+  plan.seed = seed;
+  std::printf("Alpha, from %d sweeps of mode %d in a cluttered room:\n", plan.sweeps, plan.mode);
+  std::vector<NamedEstimator> estimators;
+  for (const Calibrated& each : calibrate(plan, known_estimators())) {
+    print_alpha(each);
+    estimators.push_back(each.estimator);
+  }
+  return estimators;
+}
+
+struct AlphaAim {
+  Room room;
+  const char* in_words;
+  int mode;
+  int sweeps;
+  double aim_deg;
+};
+constexpr std::array<AlphaAim, 6> kAlphaAims{
+    {{Room::kSquare, "a square room", 7, 5, 0.015},
+     {Room::kSquare, "a square room", 1, 20, 0.04},
+     {Room::kCluttered, "a cluttered room", 7, 5, 0.015},
+     {Room::kCluttered, "a cluttered room", 1, 20, 0.04},
+     {Room::kSkewed, "a room with a wall 0.5 deg askew", 7, 5, 0.03},
+     {Room::kSkewed, "a room with a wall 0.5 deg askew", 1, 20, 0.03}}};
+
+void measure_alpha(std::uint64_t seed) {
+  for (const AlphaAim& aim : kAlphaAims) {
+    std::printf("\nAlpha, tier real, from %d sweeps of mode %d in %s; aim %.3f deg:\n", aim.sweeps,
+                aim.mode, aim.in_words, aim.aim_deg);
+    const CalibrationPlan plan{Tier::kReal, aim.room, aim.mode, aim.sweeps, seed};
+    for (const Calibrated& each : calibrate(plan, known_estimators())) print_alpha(each);
+    std::fflush(stdout);
+  }
+}
+
 void measure(const Options& options) {
-  const auto estimators = known_estimators();
   std::printf(
-      "Error of beta, deg, over %d sweeps a row: phi_start drawn within 3 deg, alpha within"
-      " 1 deg of 30.\n",
+      "Error of phi_offset, deg, over %d sweeps a row: phi_start drawn within 3 deg of 0. The rig"
+      " is calibrated first, as `swivel calibrate alpha` does it.\n",
       options.sweeps);
   std::printf(
       "/sigma: rms of error by its own sigma. 10 m: map error there, distance * tan(max),"
       " aim 50 mm.\nms: of the processor, the median of one estimate of all beams.\n");
   for (const Tier tier : options.tiers) {
+    print_tier(tier);
+    const auto estimators = calibrated_estimators(tier, options.seed);
     print_head(tier);
     for (const int mode : options.modes) {
       const TrialPlan plan{tier, mode, options.sweeps, options.seed};
@@ -123,7 +179,13 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Of all random numbers")->capture_default_str();
+  bool alpha = false;
+  app.add_flag("--alpha", alpha, "Of alpha instead, in three rooms, from few sweeps");
   CLI11_PARSE(app, argc, argv);
-  swivel::measure(options);
+  if (alpha) {
+    swivel::measure_alpha(options.seed);
+  } else {
+    swivel::measure(options);
+  }
   return 0;
 }

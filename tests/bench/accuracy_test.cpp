@@ -40,6 +40,19 @@ TEST(Accuracy, TrialsAreJudgedByTheTruth) {
   EXPECT_NE(trials[0][0].error_rad, trials[0][1].error_rad);
 }
 
+// A calibration on the bench finds the alpha that the sweeps were made with; what it found is what
+// the trials then use.
+TEST(Accuracy, ACalibrationFindsAlphaAndThePlate) {
+  const auto all = calibrate({Tier::kReal, Room::kSquare, 2, 4, 3}, known_estimators());
+  ASSERT_EQ(all.size(), known_estimators().size());
+  const Calibrated& outline = all.back();
+  ASSERT_TRUE(outline.alpha.fit) << outline.alpha.reason;
+  EXPECT_EQ(outline.estimator.plate.alpha_rad, outline.alpha.fit->alpha_rad);
+  EXPECT_LT(std::abs(outline.alpha.fit->alpha_rad - PlateGeometry().alpha_rad),
+            5.0 * outline.alpha.fit->sigma_rad);
+  EXPECT_LT(outline.estimator.plate.shape.growth_m.sigma, PlateShape().growth_m.sigma / 5.0);
+}
+
 // What makes the benchmark quick must not change what it measures.
 TEST(Accuracy, TheLowBeamsTellAllThatTheEstimatorsNeed) {
   BenchSweepOptions options = drawn_sweep(Tier::kReal, 3, 5);
