@@ -1,105 +1,36 @@
-// swivel view: a page that shows what the scanner sees, for a browser, and the Foxglove protocol
-// on the same port.
-#include <malloc.h>
-#include <spdlog/spdlog.h>
+// swivel view: becomes view_gateway, which has options of its own.
+#include <unistd.h>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdlib>
-#include <iostream>
-#include <memory>
+#include <cerrno>
+#include <cstring>
 
 #include "components/common/program.hpp"
-#include "components/common/rig_file.hpp"
-#include "components/gateway/gateway.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {
 namespace {
 
-struct ViewOptions {
-  ServerOptions server;
-  std::string token_file;
-};
-
-// What is this large is given back to the system when it is freed: a cloud is 11 MB.
-constexpr int kLargeBlockBytes = 1 << 20;
-
-std::string default_token_file() {
-  for (const char* folder : {"XDG_RUNTIME_DIR", "HOME"}) {
-    if (const char* path = std::getenv(folder); path != nullptr && *path != '\0')
-      return std::string(path) + "/swivel_view_token";
-  }
-  return {};
-}
-
-// Beyond this computer nobody gets in without a token. What was given on the command line is not
-// written down; what is made here is, since nothing else tells it.
-void arrange_token(ViewOptions& options) {
-  std::string& token = options.server.access.token;
-  if (!token.empty() && !is_token(token)) {
-    throw ExitError(kExitUsage, "a token is 16 or more of A-Z, a-z, 0-9, - and _");
-  }
-  if (!token.empty() || is_loopback(options.server.address)) return;
-  if (options.token_file.empty()) {
-    throw ExitError(kExitUsage, "no place to write a token to: give --token-file or --token");
-  }
-  token = new_token();
-  const std::string wrong = write_token(token, options.token_file);
-  if (!wrong.empty()) throw ExitError(kExitCannotWrite, "the token cannot be written: " + wrong);
-}
-
-void tell_where(const ViewOptions& options, std::uint16_t port) {
-  const bool v6 = options.server.address.find(':') != std::string::npos;
-  const std::string host = v6 ? "[" + options.server.address + "]" : options.server.address;
-  std::cout << "http://" << host << ":" << port << "/" << std::endl;
-  if (options.server.access.token.empty()) return;
-  std::cerr << "the address needs ?token=...; the token is "
-            << (options.token_file.empty() ? "the one that you gave" : "in " + options.token_file)
-            << std::endl;
-}
-
-int view(const CommonOptions& common, ViewOptions options, StopSignal& stop) {
-  start_log("swivel", common.log_level == "info" ? "warning" : common.log_level);
-  mallopt(M_MMAP_THRESHOLD, kLargeBlockBytes);
-  const RigFile rig = load_rig_file(common.rig_file);
-  if (!options.server.access.token.empty()) options.token_file.clear();
-  try {
-    arrange_token(options);
-    Participant participant(common.participant("gateway", rig.rig));
-    Gateway gateway(participant, rig, options.server);
-    participant.start();
-    tell_where(options, gateway.port());
-    stop.wait();
-    participant.stop();
-  } catch (const ServerError& error) {
-    throw ExitError(kExitUnavailable, error.what());
-  }
-  return kExitOk;
+int become_gateway(std::vector<std::string> arguments) {
+  const std::string path = program_directory() + "/view_gateway";
+  arguments.insert(arguments.begin(), path);
+  std::vector<char*> values;
+  for (std::string& argument : arguments) values.push_back(argument.data());
+  values.push_back(nullptr);
+  execv(path.c_str(), values.data());
+  throw ExitError(kExitUnavailable,
+                  path + ": " + std::strerror(errno) + "; it belongs beside swivel");
 }
 
 }  // namespace
 
-void add_view(CLI::App& app, StopSignal& stop, Verb& chosen) {
+void add_view(CLI::App& app, Verb& chosen) {
   CLI::App* const verb = app.add_subcommand(
       "view", "A page for the browser: the running sweep, the cloud, its quality");
-  const auto common = std::make_shared<CommonOptions>();
-  const auto options = std::make_shared<ViewOptions>();
-  options->token_file = default_token_file();
-  verb->add_option("--port", options->server.port, "0: any that is free")->capture_default_str();
-  verb->add_option("--listen", options->server.address,
-                   "An IP address of this computer; beyond loopback clients need a token")
-      ->capture_default_str();
-  verb->add_option("--token", options->server.access.token,
-                   "What clients must know; better in the environment, which others cannot see")
-      ->envname("SWIVEL_VIEW_TOKEN");
-  verb->add_option("--token-file", options->token_file, "Where a token that is made goes")
-      ->capture_default_str();
-  verb->add_option("--allow-origin", options->server.access.allowed_origins,
-                   "Another page that may connect: https://app.foxglove.dev");
-  add_common_options(*verb, *common);
-  verb->callback(
-      [=, &stop, &chosen] { chosen = [=, &stop] { return view(*common, *options, stop); }; });
+  verb->set_help_flag();
+  verb->prefix_command();
+  verb->callback([=, &chosen] { chosen = [=] { return become_gateway(verb->remaining()); }; });
 }
 
 }  // namespace swivel

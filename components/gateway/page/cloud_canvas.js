@@ -42,7 +42,7 @@ class CloudCanvas {
     this.ceiling_mm = Infinity;
     this.points = new Int16Array(0);  // x, y, z, then intensity and flag, of each
     this.count = 0;                   // points that may be drawn
-    this.eye = { azimuth: -0.9, elevation: 0.85, distance_mm: 11000, target: [0, 0, 0] };
+    this.eye = { azimuth: -2.5, elevation: 0.85, distance_mm: 11000, target: [0, 0, 0] };
     this.shown = 0;  // points on the canvas
     this.resize();
   }

@@ -118,6 +118,7 @@ function drawFrame() {
   setText("numbers", `${cloud.shown.toLocaleString("en")} points drawn, ${(now - before).toFixed(0)} ms`);
   document.body.dataset.frames = frames.length;  // of the last second
   document.body.dataset.points = cloud.shown;
+  document.body.dataset.drawing = now - before;  // ms
 }
 
 function drawPlate() {
@@ -151,7 +152,7 @@ function drawOverlay() {
 // ---- how one looks at it
 
 const VIEWS = {
-  oblique: { azimuth: -0.9, elevation: 0.85, distance_mm: 11000 },
+  oblique: { azimuth: -2.5, elevation: 0.85, distance_mm: 11000 },
   above: { azimuth: -Math.PI / 2, elevation: Math.PI / 2, distance_mm: 12000 },
   inside: { azimuth: Math.PI, elevation: 0.12, distance_mm: 300 },
 };
