@@ -33,6 +33,7 @@ Gateway::Gateway(Participant& participant, const RigFile& rig, const ServerOptio
       server_(options, server_content()) {
   subscribe(participant);
   participant.on_tick(kTick, [this] { tick(); });
+  participant.on_tick(std::chrono::seconds(1), [this] { repeat_request(); });
   health_.set_state(msg::HEALTH_OK, "serving port " + std::to_string(port()));
 }
 
@@ -100,9 +101,10 @@ void Gateway::obey(const std::string& text) {
   } else if (command->cancel) {
     spdlog::info("the page cancels");
     requester_.cancel();
+    requester_.forget();
   } else {
     spdlog::info("the page asks for a sweep in mode {}", command->mode);
-    answer_ = "asked for a sweep";
+    answer_.clear();
     requester_.request(new_request_id(), command->mode, 1);
   }
 }
@@ -111,10 +113,15 @@ void Gateway::tick() {
   last_tick_ns_ = steady_clock::now().time_since_epoch().count();
   const std::lock_guard lock(mutex_);
   view_.check(steady_clock::now());
-  if (!requester_.check(steady_clock::now()))
-    answer_ = "stepper_sequencer does not answer; does it run?";
   publish_state(steady_clock::now());
   report();
+}
+
+void Gateway::repeat_request() {
+  const std::lock_guard lock(mutex_);
+  if (requester_.check(steady_clock::now())) return;
+  requester_.forget();
+  answer_ = "stepper_sequencer does not answer; does it run?";
 }
 
 void Gateway::publish_state(steady_clock::time_point now) {

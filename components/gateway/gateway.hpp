@@ -33,6 +33,7 @@ class Gateway {
   void take(const PointCloud2& cloud);
   void obey(const std::string& text);
   void tick();
+  void repeat_request();
   void publish_state(std::chrono::steady_clock::time_point now);
   void report();
 

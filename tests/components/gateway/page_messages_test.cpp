@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "components/common/sweep_requester.hpp"
+
 namespace swivel {
 namespace {
 
@@ -36,6 +38,20 @@ TEST(PageMessages, TheStateIsJsonWhateverParticipantsSay) {
   EXPECT_EQ(state["modes"][1]["seconds"], 16.0);
   EXPECT_EQ(state["participants"].size(), 1U);
   EXPECT_FALSE(state["motor"]["known"]);
+}
+
+// The gateway lives long: nobody expects a click of an hour ago to turn the motor.
+TEST(SweepRequests, AreNotRepeatedOnceForgotten) {
+  int sent = 0;
+  SweepRequester requester([&](const msg::SweepRequest&) { ++sent; });
+  requester.request(5, 1, 1);
+  const std::chrono::steady_clock::time_point start(std::chrono::hours(1));
+  EXPECT_TRUE(requester.check(start));
+  EXPECT_FALSE(requester.check(start + std::chrono::seconds(11)));
+  EXPECT_EQ(sent, 3);
+  requester.forget();
+  EXPECT_TRUE(requester.check(start + std::chrono::hours(1)));
+  EXPECT_EQ(sent, 3);
 }
 
 }  // namespace
