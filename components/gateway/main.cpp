@@ -41,7 +41,9 @@ void arrange_token(ViewOptions& options) {
   if (!token.empty() && !is_token(token)) {
     throw ExitError(kExitUsage, "a token is 16 or more of A-Z, a-z, 0-9, - and _");
   }
-  if (!token.empty() || is_loopback(options.server.address)) return;
+  const auto loopback = is_loopback(options.server.address);
+  if (!loopback) throw ExitError(kExitUsage, options.server.address + " is no IP address");
+  if (!token.empty() || *loopback) return;
   if (options.token_file.empty()) {
     throw ExitError(kExitUsage, "no place to write a token to: give --token-file or --token");
   }

@@ -41,9 +41,15 @@ Trust trust_in_cloud(const Picture& picture) {
             fmt::format("{} of {} lines are missing; {}", attitude.lines_missing(),
                         attitude.lines_expected(), attitude.reason())};
   }
-  const bool measured = attitude.verdict() == msg::VERDICT_MEASURED;
-  return {Level::kGood, "Good",
-          measured ? "the rig measures its axis: nothing to correct" : attitude.reason()};
+  if (attitude.verdict() == msg::VERDICT_MEASURED) {
+    return {Level::kGood, "Good", "the rig measures its axis: nothing to correct"};
+  }
+  if (!attitude.calibrated()) {
+    return {Level::kGood, "Not calibrated",
+            "the plate was found, but stands only as drawn: all clouds may be turned by the same "
+            "angle; run: swivel calibrate alpha"};
+  }
+  return {Level::kGood, "Good", attitude.reason()};
 }
 
 }  // namespace

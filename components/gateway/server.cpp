@@ -25,8 +25,10 @@ boost::asio::ip::address parsed_address(const std::string& text) {
 
 }  // namespace
 
-bool is_loopback(const std::string& address) {
-  return parsed_address(address).is_loopback();
+std::optional<bool> is_loopback(const std::string& address) {
+  boost::system::error_code error;
+  const auto parsed = boost::asio::ip::make_address(address, error);
+  return error ? std::nullopt : std::optional(parsed.is_loopback());
 }
 
 class Server::Implementation {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -51,8 +52,8 @@ struct ServerError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Whether only this computer can reach it. Throws ServerError for what is no IP address.
-bool is_loopback(const std::string& address);
+// Whether only this computer can reach it; none for what is no IP address.
+std::optional<bool> is_loopback(const std::string& address);
 
 class Server {
  public:

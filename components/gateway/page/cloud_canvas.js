@@ -8,9 +8,9 @@ const BACKGROUND = 0xff17110d;  // as pixels are stored: alpha, blue, green, red
 // What the colours mean: blue is to be trusted, vermillion is not, grey is on its way. Dark is
 // low, light is high.
 const RAMPS = {
-  good: [[14, 40, 92], [0, 114, 178], [86, 180, 233], [232, 244, 252]],
-  bad: [[84, 28, 4], [190, 76, 0], [236, 128, 58], [255, 232, 212]],
-  running: [[52, 58, 68], [118, 126, 138], [184, 190, 198], [250, 250, 250]],
+  good: [[22, 66, 140], [0, 114, 178], [86, 180, 233], [232, 244, 252]],
+  bad: [[126, 46, 8], [196, 82, 4], [236, 128, 58], [255, 232, 212]],
+  running: [[78, 86, 98], [126, 134, 146], [184, 190, 198], [250, 250, 250]],
 };
 
 function rampColour(ramp, place) {

@@ -23,10 +23,10 @@ function facts(state) {
                                          ["lines", `${picture.lines_in} of ${picture.lines}`]);
   if (!attitude) return rows;
   rows.push(["turned by", degrees(attitude.phi_offset_deg)]);
-  if (attitude.sigma_deg !== null && attitude.sigma_deg > 0) {
+  if (attitude.sigma_deg > 0) rows.push(["sigma", degrees(attitude.sigma_deg)]);
+  if (attitude.sigma_deg > 0 && attitude.calibrated) {
     const wall_mm = 10000 * Math.tan(2 * attitude.sigma_deg * Math.PI / 180);
-    rows.push(["sigma", degrees(attitude.sigma_deg)],
-              ["a wall 10 m off", `within ${wall_mm.toFixed(0)} mm (2 sigma)`]);
+    rows.push(["a wall 10 m off", `within ${wall_mm.toFixed(0)} mm (2 sigma)`]);
   }
   if (attitude.seam_deg !== null) rows.push(["seam", `${degrees(attitude.seam_deg)} ± ${degrees(attitude.seam_sigma_deg)}`]);
   rows.push(["plate's points", `${attitude.points_used}`]);
@@ -39,14 +39,11 @@ function showVerdict(state) {
   document.body.dataset.kind = state.picture.kind;
   setText("headline", state.trust.headline);
   setText("reason", state.trust.reason);
-  const { attitude } = state;
-  const uncalibrated = attitude && attitude.points_used > 0 && !attitude.calibrated;
-  setText("warning", attitude && attitude.warning ||
-      (uncalibrated ? "Not calibrated: all clouds may be turned by the same few degrees. Run: swivel calibrate alpha" : ""));
+  setText("warning", state.attitude?.warning ?? "");
   element("facts").replaceChildren(...facts(state).flatMap(([name, value]) => [made("dt", name), made("dd", value)]));
   const words = { good: "Corrected", bad: "Not to be trusted", running: "Scanning", waiting: "Wait", nothing: "No sweep yet" };
   setText("badge-word", words[state.trust.level]);
-  setText("badge-words", { good: "the cloud stands in the rig's frame", bad: state.trust.headline, nothing: "" }[state.trust.level] ??
+  setText("badge-words", { good: state.trust.headline === "Good" ? "the cloud stands in the rig's frame" : state.trust.headline.toLowerCase(), bad: state.trust.headline, nothing: "" }[state.trust.level] ??
       `${state.picture.lines_in} of ${state.picture.lines} lines, start angle unknown`);
   const running = state.trust.level === "running";
   element("progress").firstElementChild.style.width = running ? `${100 * state.picture.lines_in / Math.max(state.picture.lines, 1)}%` : "0";

@@ -131,6 +131,17 @@ TEST(LiveView, GoodIsOnlyACloudInTheBaseWithAGoodAttitudeOfItsOwn) {
   EXPECT_EQ(test.level(), Trust::Level::kBad);
 }
 
+TEST(LiveView, WithoutACalibrationTheHeadlineSaysSo) {
+  ViewOfAStory test;
+  test.cloud("swivel/base");
+  msg::Attitude attitude = test.attitude();
+  test.view.take(attitude);
+  EXPECT_EQ(trust_in(test.view.picture()).headline, "Not calibrated");
+  attitude.calibrated(true);
+  test.view.take(attitude);
+  EXPECT_EQ(trust_in(test.view.picture()).headline, "Good");
+}
+
 TEST(LiveView, AnotherSweepsAttitudeSaysNothing) {
   ViewOfAStory test;
   msg::Attitude other = test.attitude();

@@ -41,8 +41,8 @@ TEST(PackedPoints, TakeAnyBits) {
     const PackedPoint small = packed(point);
     const bool inside =
         std::abs(point.x_m) < 32.0F && std::abs(point.y_m) < 32.0F && std::abs(point.z_m) < 32.0F;
-    if (inside) ASSERT_EQ(small.flag, PointFlag::kPoint);
-    if (small.flag != PointFlag::kPoint) ASSERT_EQ(small.x_mm, 0);
+    ASSERT_TRUE(!inside || small.flag == PointFlag::kPoint);
+    ASSERT_TRUE(small.flag == PointFlag::kPoint || small.x_mm == 0);
   }
 }
 

@@ -38,9 +38,9 @@ struct Watched {
   }
   cv::Mat picture() {
     const std::string png = browser.screenshot();
-    return cv::imdecode(cv::Mat(1, static_cast<int>(png.size()), CV_8UC1,
-                                const_cast<char*>(png.data())),
-                        cv::IMREAD_COLOR);
+    return cv::imdecode(
+        cv::Mat(1, static_cast<int>(png.size()), CV_8UC1, const_cast<char*>(png.data())),
+        cv::IMREAD_COLOR);
   }
 };
 
@@ -73,14 +73,16 @@ TEST(View, AClickScansTheRoomAndThePageSaysThatItIsGood) {
   std::istringstream words(bench.read_line(std::chrono::seconds(10)).value_or(""));
   std::string word, lidar, stepper;
   words >> word >> lidar >> word >> stepper;
-  ChildProcess up("swivel", {"up", "--domain", page.domain, "--log-level", "error", "--lidar", lidar,
-                             "--stepper", stepper, "--calibration", page.scratch.file("none.yaml")});
+  ChildProcess up("swivel",
+                  {"up", "--domain", page.domain, "--log-level", "error", "--lidar", lidar,
+                   "--stepper", stepper, "--calibration", page.scratch.file("none.yaml")});
   ASSERT_TRUE(page.browser.await("document.querySelector('[data-mode=\"1\"]:enabled')"))
       << "the stepper homes, and the modes can be clicked";
   page.browser.click("[data-view='above']");
   page.browser.click("[data-mode='1']");
-  EXPECT_TRUE(page.browser.await("document.body.dataset.trust === 'running' && "
-                                 "document.body.dataset.points > 1000"));
+  EXPECT_TRUE(
+      page.browser.await("document.body.dataset.trust === 'running' && "
+                         "document.body.dataset.points > 1000"));
   ASSERT_TRUE(page.browser.await(
       "document.body.dataset.kind === 'cloud' && document.body.dataset.trust !== 'waiting'"));
   EXPECT_EQ(page.data("trust"), "good") << page.browser.evaluate("document.body.innerText");
