@@ -3,6 +3,7 @@
 
 const POINT = 1;  // the flag of a point, see packed_points.hpp
 const NEAREST_MM = 60;
+const MOST_PIXELS = 4;  // that a point covers, each way
 const BACKGROUND = 0xff17110d;  // as pixels are stored: alpha, blue, green, red
 
 // What the colours mean: blue is to be trusted, vermillion is not, grey is on its way. Dark is
@@ -98,7 +99,7 @@ class CloudCanvas {
     const halfWidth = width / 2, halfHeight = height / 2;
     const focal = this.focal(), away = this.eye.distance_mm, ceiling = this.ceiling_mm;
     const colours = this.colours[this.level], low = this.low_mm, scale = 255 / Math.max(this.high_mm - low, 1);
-    const wideBelow = focal * 14;  // mm: nearer points cover two pixels each way
+    const spread = 16 * focal;  // points are some 16 mm apart: nearer ones cover more pixels
     let shown = 0;
     for (let at = 4 * first, stop = 4 * end; at < stop; at += 4) {
       const word = points[at + 3];
@@ -110,19 +111,20 @@ class CloudCanvas {
       const zoom = focal / far;
       const column = halfWidth + zoom * (r0 * x + r1 * y + r2 * z);
       const row = halfHeight + zoom * (d0 * x + d1 * y + d2 * z);
-      if (column < 0 || row < 0 || column >= width - 1 || row >= height - 1) continue;
+      if (column < 0 || row < 0 || column >= width - MOST_PIXELS || row >= height - MOST_PIXELS) continue;
       let level = (pz - low) * scale | 0;
       level = level < 0 ? 0 : level > 255 ? 255 : level;
       const light = (word & 255) >> 3;
       const colour = colours[level * 16 + (light > 15 ? 15 : light)];
       const pixel = (row | 0) * width + (column | 0);
       ++shown;
-      if (far < depth[pixel]) { depth[pixel] = far; flat[pixel] = colour; }
-      if (far > wideBelow) continue;
-      if (far < depth[pixel + 1]) { depth[pixel + 1] = far; flat[pixel + 1] = colour; }
-      const below = pixel + width;
-      if (far < depth[below]) { depth[below] = far; flat[below] = colour; }
-      if (far < depth[below + 1]) { depth[below + 1] = far; flat[below + 1] = colour; }
+      let side = spread / far + 1 | 0;
+      if (side > MOST_PIXELS) side = MOST_PIXELS;
+      for (let corner = pixel, last = pixel + side * width; corner < last; corner += width) {
+        for (let place = corner; place < corner + side; ++place) {
+          if (far < depth[place]) { depth[place] = far; flat[place] = colour; }
+        }
+      }
     }
     this.shown += shown;
   }

@@ -153,7 +153,7 @@ function drawOverlay() {
 
 const VIEWS = {
   oblique: { azimuth: -2.5, elevation: 0.85, distance_mm: 11000 },
-  above: { azimuth: -Math.PI / 2, elevation: Math.PI / 2, distance_mm: 12000 },
+  above: { azimuth: -Math.PI / 2, elevation: Math.PI / 2, distance_mm: 10000 },
   inside: { azimuth: Math.PI, elevation: 0.12, distance_mm: 300 },
 };
 

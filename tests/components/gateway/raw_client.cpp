@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -39,6 +40,7 @@ bool RawClient::read_more() {
   std::array<char, 65536> bytes{};
   const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
   if (count > 0) unread_.append(bytes.data(), static_cast<std::size_t>(count));
+  out_of_patience_ = count < 0 && errno == EAGAIN;
   return count > 0;
 }
 
@@ -51,7 +53,7 @@ bool RawClient::read_up_to(std::size_t bytes) {
 bool RawClient::closed() {
   while (read_more()) {
   }
-  return errno != EAGAIN;
+  return !out_of_patience_;
 }
 
 std::string RawClient::read_to_end() {

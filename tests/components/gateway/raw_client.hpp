@@ -39,6 +39,7 @@ class RawClient {
   bool read_up_to(std::size_t bytes);
 
   int socket_ = -1;
+  bool out_of_patience_ = false;
   std::string unread_;
 };
 

@@ -120,7 +120,8 @@ TEST(Server, APageIsToldAllAndThenWhatIsNew) {
 TEST(Server, SpeaksFoxglove) {
   for (const char* protocol : {"foxglove.websocket.v1", "foxglove.sdk.v1", "x, foxglove.sdk.v1"}) {
     TestServer test;
-    RawClient client(test.port());
+    auto open = std::make_unique<RawClient>(test.port());
+    RawClient& client = *open;
     ASSERT_EQ(status_of(client.open_web_socket(protocol, "localhost")), 101);
     EXPECT_EQ(nlohmann::json::parse(client.read_message()->payload)["op"], "serverInfo");
     EXPECT_EQ(nlohmann::json::parse(client.read_message()->payload)["op"], "advertise");
@@ -135,7 +136,7 @@ TEST(Server, SpeaksFoxglove) {
     EXPECT_EQ(message->opcode, 2);
     EXPECT_EQ(message->payload,
               std::string("\x01\x05\0\0\0\x08\x07\x06\x05\x04\x03\x02\x01", 13) + "the sweep");
-    client.send_frame(8, "");
+    open.reset();
     ASSERT_TRUE(test.await([](const auto& counters) { return counters.clients == 0; }));
     EXPECT_FALSE(test.server.wanted(kSweepChannel));
   }
