@@ -59,20 +59,18 @@ Browser::Browser(const std::string& profile) {
   commands_ = to[1];
   answers_ = from[0];
   signal(SIGPIPE, SIG_IGN);
-  for (const json& target : call("Target.getTargets")["targetInfos"]) {
-    if (target["type"] != "page") continue;
-    const json wish{{"targetId", target["targetId"]}, {"flatten", true}};
-    session_ = call("Target.attachToTarget", wish)["sessionId"];
-    return;
-  }
-  throw std::runtime_error("Chromium has no page");
+  const json page = call("Target.createTarget", {{"url", "about:blank"}});
+  session_ = call("Target.attachToTarget",
+                  {{"targetId", page["targetId"]}, {"flatten", true}})["sessionId"];
 }
 
+// Asked to close, it waits for its helpers, which write to the profile.
 Browser::~Browser() {
+  const std::string close_it = R"({"id":0,"method":"Browser.close"})" + std::string(1, '\0');
+  if (write(commands_, close_it.data(), close_it.size()) < 0) kill(process_, SIGTERM);
+  waitpid(process_, nullptr, 0);
   close(commands_);
   close(answers_);
-  kill(process_, SIGTERM);
-  waitpid(process_, nullptr, 0);
 }
 
 std::string Browser::read_message() {
@@ -99,7 +97,7 @@ json Browser::call(const std::string& method, const json& parameters) {
   while (true) {
     json answer = json::parse(read_message());
     if (!answer.contains("id") || answer["id"] != last_id_) continue;  // an event
-    if (answer.contains("error")) throw std::runtime_error(answer["error"].dump());
+    if (answer.contains("error")) throw PageError(answer["error"].dump());
     return answer["result"];
   }
 }
@@ -112,18 +110,21 @@ json Browser::evaluate(const std::string& javascript) {
   const json result =
       call("Runtime.evaluate",
            {{"expression", javascript}, {"returnByValue", true}, {"awaitPromise", true}});
-  if (result.contains("exceptionDetails"))
-    throw std::runtime_error(result["exceptionDetails"].dump());
+  if (result.contains("exceptionDetails")) throw PageError(result["exceptionDetails"].dump());
   return result["result"].value("value", json());
 }
 
 bool Browser::await(const std::string& javascript, std::chrono::seconds limit) {
-  const std::string loop = "new Promise((done) => { const end = performance.now() + " +
-                           std::to_string(limit.count() * 1000) + "; const look = () => { if (" +
-                           javascript +
-                           ") done(true); else if (performance.now() > end) done(false); "
-                           "else setTimeout(look, 10); }; look(); })";
-  return evaluate(loop).get<bool>();
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (std::chrono::steady_clock::now() < deadline) {
+    try {
+      if (evaluate("Boolean(" + javascript + ")").get<bool>()) return true;
+    } catch (const PageError&) {
+      // The page is still on its way.
+    }
+    usleep(5000);
+  }
+  return false;
 }
 
 void Browser::mouse(const std::string& type, double x, double y, int buttons) {

@@ -5,9 +5,15 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 
 namespace swivel {
+
+// The page, or Chromium, answered with an error.
+struct PageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 class Browser {
  public:
