@@ -3,8 +3,11 @@
 
 const POINT = 1;  // the flag of a point, see packed_points.hpp
 const NEAREST_MM = 60;
+const HIDDEN_MM = 30;   // so far behind another, a point is hidden with all its pixels
 const MOST_PIXELS = 4;  // that a point covers, each way
-const BACKGROUND = 0xff17110d;  // as pixels are stored: alpha, blue, green, red
+// Pixels are alpha, blue, green, red, in signed words: unsigned ones do not fit the small integers
+// with which JavaScript is quick.
+const BACKGROUND = 0xff17110d | 0;
 
 // What the colours mean: blue is to be trusted, vermillion is not, grey is on its way. Dark is
 // low, light is high.
@@ -22,12 +25,12 @@ function rampColour(ramp, place) {
 
 // 256 heights by 16 intensities, as pixels.
 function makeColours(ramp) {
-  const colours = new Uint32Array(256 * 16);
+  const colours = new Int32Array(256 * 16);
   for (let height = 0; height < 256; ++height) {
     const rgb = rampColour(ramp, height / 255);
     for (let light = 0; light < 16; ++light) {
       const [r, g, b] = rgb.map((value) => Math.round(value * (0.72 + 0.28 * light / 15)));
-      colours[height * 16 + light] = (0xff000000 | b << 16 | g << 8 | r) >>> 0;
+      colours[height * 16 + light] = 0xff000000 | b << 16 | g << 8 | r;
     }
   }
   return colours;
@@ -55,8 +58,8 @@ class CloudCanvas {
     this.canvas.width = width;
     this.canvas.height = height;
     this.image = this.context.createImageData(width, height);
-    this.pixels = new Uint32Array(this.image.data.buffer);
-    this.flat = new Uint32Array(width * height);   // colours before the edges are darkened
+    this.pixels = new Int32Array(this.image.data.buffer);
+    this.flat = new Int32Array(width * height);   // colours before the edges are darkened
     this.depth = new Float32Array(width * height);
   }
 
@@ -118,6 +121,7 @@ class CloudCanvas {
       const colour = colours[level * 16 + (light > 15 ? 15 : light)];
       const pixel = (row | 0) * width + (column | 0);
       ++shown;
+      if (depth[pixel] < far - HIDDEN_MM) continue;  // most points of a large cloud
       let side = spread / far + 1 | 0;
       if (side > MOST_PIXELS) side = MOST_PIXELS;
       for (let corner = pixel, last = pixel + side * width; corner < last; corner += width) {
@@ -150,8 +154,8 @@ class CloudCanvas {
       if (behind < 0.004) continue;
       const keep = 256 / (1 + 9 * behind) | 0;
       const colour = flat[pixel];
-      pixels[pixel] = (0xff000000 | ((colour & 0xff00ff) * keep >>> 8 & 0xff00ff) |
-                       ((colour >>> 8 & 0xff) * keep & 0xff00)) >>> 0;
+      pixels[pixel] = 0xff000000 | Math.imul(colour & 0xff00ff, keep) >>> 8 & 0xff00ff |
+                      Math.imul(colour >>> 8 & 0xff, keep) & 0xff00;
     }
     this.context.putImageData(this.image, 0, 0);
   }
