@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "components/gateway/server.hpp"
 

@@ -16,6 +16,7 @@ int become_gateway(std::vector<std::string> arguments) {
   const std::string path = program_directory() + "/view_gateway";
   arguments.insert(arguments.begin(), path);
   std::vector<char*> values;
+  values.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) values.push_back(argument.data());
   values.push_back(nullptr);
   execv(path.c_str(), values.data());

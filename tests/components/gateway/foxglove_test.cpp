@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "components/dds/cdr.hpp"
 #include "components/gateway/channels.hpp"
 #include "components/gateway/metrics.hpp"
 
@@ -82,6 +84,21 @@ TEST(Foxglove, SubscriptionsAreBounded) {
 TEST(Foxglove, AMessagesHeadIsThirteenBytes) {
   EXPECT_EQ(foxglove_message_head(0x04030201, 0x0c0b0a0908070605),
             "\x01\x01\x02\x03\x04\x05\x06\x07\x08\x09\x0a\x0b\x0c");
+}
+
+TEST(Foxglove, AMessageIsTheBytesThatDdsSends) {
+  msg::Sweep sweep;
+  sweep.rig("rig7");
+  sweep.sweep_id(77);
+  sweep.reason("because");
+  const std::string bytes = cdr_of(sweep);
+  EXPECT_EQ(bytes.substr(0, 4), std::string("\0\1\0\0", 4)) << "CDR, little endian";
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
+  payload.length = payload.max_size;
+  std::memcpy(payload.data, bytes.data(), bytes.size());
+  msg::Sweep back;
+  ASSERT_TRUE(msg::SweepPubSubType().deserialize(&payload, &back));
+  EXPECT_EQ(back, sweep);
 }
 
 TEST(Metrics, AreWhatPrometheusReads) {
