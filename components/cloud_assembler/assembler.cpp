@@ -189,6 +189,7 @@ void Assembler::place(const msg::ScanLine& line) {
       ++counters_.lines_used;
       news_ = true;
       last_used_ns_ = last_beam_time_ns(line);
+      if (on_row_) on_row_(sweep_->announced(), sweep_->cloud(), sweep_->last_row());
       break;
     case SweepInProgress::Fate::kRefused:
       ++counters_.lines_rejected;

@@ -47,6 +47,11 @@ class Assembler {
  public:
   Assembler(const AssemblyOptions& options, std::function<void(AssembledSweep&&)> on_sweep);
 
+  // Told of each row as it is placed, for who wants to see a sweep while it runs.
+  using OnRow = std::function<void(const msg::Sweep& announced, const OrganisedCloud& cloud,
+                                   std::size_t row)>;
+  void on_row(OnRow on_row) { on_row_ = std::move(on_row); }
+
   void add(const msg::ScanLine& line);
   void add(const msg::Axis& axis);
   void add(const msg::Sweep& sweep);
@@ -80,6 +85,7 @@ class Assembler {
 
   AssemblyOptions options_;
   std::function<void(AssembledSweep&&)> on_sweep_;
+  OnRow on_row_;
   AxisTrack axis_;
   std::int64_t last_axis_ns_ = 0;
   std::uint64_t last_axis_number_ = 0;

@@ -48,6 +48,8 @@ class SweepInProgress {
 
   // What is known of the sweep now, as PHASE_ASSEMBLED.
   msg::Sweep summary(const std::string& reason) const;
+  const OrganisedCloud& cloud() const { return cloud_; }  // empty before the first line
+  std::size_t last_row() const { return previous_row_; }  // of the line placed last
   OrganisedCloud take_cloud() { return std::move(cloud_); }
 
  private:

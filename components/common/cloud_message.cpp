@@ -65,7 +65,7 @@ void to_message(const OrganisedCloud& cloud, std::int64_t first_beam_time_ns,
   }
 }
 
-std::string from_message(const PointCloud2Message& message, OrganisedCloud& cloud) {
+std::string wrong_with(const PointCloud2Message& message) {
   if (!has_our_fields(message) || message.point_step() != sizeof(CloudPoint) ||
       message.is_bigendian()) {
     return "its fields are not x, y, z, intensity as little-endian float32";
@@ -80,10 +80,17 @@ std::string from_message(const PointCloud2Message& message, OrganisedCloud& clou
       message.row_step() != message.width() * sizeof(CloudPoint)) {
     return "its data does not have the size that its shape asks for";
   }
+  return {};
+}
+
+std::string from_message(const PointCloud2Message& message, OrganisedCloud& cloud) {
+  if (std::string wrong = wrong_with(message); !wrong.empty()) return wrong;
   cloud.lines = message.height();
   cloud.beams = message.width();
   cloud.points.resize(cloud.lines * cloud.beams);
-  if (bytes != 0) std::memcpy(cloud.points.data(), message.data().data(), bytes);
+  if (!cloud.points.empty()) {
+    std::memcpy(cloud.points.data(), message.data().data(), message.data().size());
+  }
   return {};
 }
 

@@ -18,8 +18,11 @@ std::string base_frame(const std::string& rig);
 void to_message(const OrganisedCloud& cloud, std::int64_t first_beam_time_ns,
                 const std::string& frame_id, PointCloud2Message& message);
 
+// Other writers may send anything: layout, sizes and bounds. Empty if the message's data are
+// height * width CloudPoints.
+[[nodiscard]] std::string wrong_with(const PointCloud2Message& message);
+
 // Fills cloud, whose memory is used again; else says what is wrong with the message.
-// Other writers may send anything: layout, sizes and bounds are checked first.
 [[nodiscard]] std::string from_message(const PointCloud2Message& message, OrganisedCloud& cloud);
 
 std::int64_t stamp_ns(const PointCloud2Message& message);

@@ -22,6 +22,8 @@ class SweepRequester {
   void request(std::uint64_t request_id, int mode, int count,
                msg::SweepSequence action_sequence = msg::SEQUENCE_IMPROVED);
   void cancel();
+  // It is not repeated any more: a sequencer that starts later must not take it.
+  void forget() { request_ = {}; }
 
   // Every Sweep on the topic; true if it belongs to the request.
   bool saw(const msg::Sweep& sweep);

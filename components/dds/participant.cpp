@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <algorithm>
 #include <deque>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -87,6 +88,18 @@ const char* policy_in_words(fast::QosPolicyId_t policy) {
   }
 }
 
+// The profile's own description stays as it is: other participants of this process share it.
+void set_shared_memory_size(fast::DomainParticipantQos& qos, std::uint32_t bytes) {
+  using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+  for (auto& transport : qos.transport().user_transports) {
+    const auto* const given = dynamic_cast<const SharedMemTransportDescriptor*>(transport.get());
+    if (given == nullptr) continue;
+    auto smaller = std::make_shared<SharedMemTransportDescriptor>(*given);
+    smaller->segment_size(bytes);
+    transport = smaller;
+  }
+}
+
 fast::DomainParticipantQos participant_qos(const ParticipantOptions& options) {
   auto* const factory = fast::DomainParticipantFactory::get_instance();
   fast::DomainParticipantQos qos;
@@ -103,6 +116,7 @@ fast::DomainParticipantQos participant_qos(const ParticipantOptions& options) {
     }
   }
   qos.name((options.rig + "/" + options.name).c_str());
+  if (options.shared_memory_bytes > 0) set_shared_memory_size(qos, options.shared_memory_bytes);
   return qos;
 }
 

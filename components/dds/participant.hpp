@@ -39,6 +39,9 @@ struct ParticipantOptions {
   int domain = 0;             // 0 .. 232
   std::string network;        // a participant profile: "loopback" or "lan"
   std::string profiles_path;  // dds_profiles.xml
+  // For what it writes to others on this computer; all of it is resident. 0: as the profile says,
+  // which is enough for clouds.
+  std::uint32_t shared_memory_bytes = 0;
 };
 
 // No participant, writer or reader could be made; what() says what to do.

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_replay(app, stop, verb);
   add_process(app, verb);
   add_report(app, stop, verb);
+  add_view(app, verb);
   add_demo(app, stop, verb);
   return run_program(app, argc, argv, [&] {
     if (!verb) throw ExitError(kExitUsage, "say what to do; the verbs:\n" + app.help());

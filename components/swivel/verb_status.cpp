@@ -5,10 +5,10 @@
 #include <CLI/Formatter.hpp>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
+#include "components/swivel/live/health_json.hpp"
 #include "components/swivel/live/participants.hpp"
 #include "components/swivel/live/roll.hpp"
 #include "components/swivel/verbs.hpp"
@@ -52,26 +52,6 @@ void print(const std::string& name, const RollEntry& entry) {
     std::cout << fmt::format("{:<20} {:<9} last error, {:.0f} s ago: {}\n", "", "",
                              seconds_since(health.last_error_time_ns()), health.last_error());
   }
-}
-
-nlohmann::ordered_json to_json(const RollEntry& entry) {
-  const msg::Health& health = entry.last;
-  const std::chrono::duration<double> age = std::chrono::steady_clock::now() - entry.last_seen;
-  nlohmann::ordered_json json{{"state", health_word(health.state())},
-                              {"doing", health.doing()},
-                              {"age_s", age.count()},
-                              {"up_s", seconds_since(health.started_time_ns())},
-                              {"host", health.host()},
-                              {"process_id", health.process_id()}};
-  for (const msg::Counter& counter : health.counters()) {
-    const std::string name = counter.name().to_string();
-    json["counters"][name] = counter.value();
-    if (const auto rate = entry.rate(name)) json["rates_per_s"][name] = *rate;
-  }
-  for (const msg::Fact& fact : health.facts())
-    json["facts"][fact.name().to_string()] = fact.value();
-  json["last_error"] = health.last_error();
-  return json;
 }
 
 void print_json(const std::map<std::string, RollEntry>& entries) {

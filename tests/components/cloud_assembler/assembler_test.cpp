@@ -29,6 +29,26 @@ TEST(Assembler, PutsEveryBeamAtTheAxisAngleOfItsOwnInstant) {
   stage.expect_counters_add_up();
 }
 
+TEST(Assembler, TellsOfEachRowAsItIsPlaced) {
+  const Story story;
+  Stage stage;
+  std::vector<std::size_t> rows;
+  OrganisedCloud seen(story.lines, story.beams);
+  stage.assembler.on_row(
+      [&](const msg::Sweep& announced, const OrganisedCloud& cloud, std::size_t row) {
+        EXPECT_EQ(announced.sweep_id(), story.sweep_id);
+        rows.push_back(row);
+        std::copy_n(cloud.line(row), cloud.beams, seen.line(row));
+      });
+  stage.add(story.axis());
+  stage.add(story.cruising());
+  stage.add_lines(story, -3, 7, 4);
+  EXPECT_EQ(rows, (std::vector<std::size_t>{0, 1, 2, 3, 5, 6})) << "before the sweep is over";
+  stage.add_lines(story, 7, 14);
+  ASSERT_EQ(stage.sweeps.size(), 1U);
+  expect_same(seen, stage.sweeps[0].cloud);
+}
+
 TEST(Assembler, LinesOutsideTheWindowAreNotUsed) {
   Story story;
   Stage stage;

@@ -10,7 +10,7 @@ namespace swivel {
 namespace {
 
 // Takes from the topics by chance, each in its own order.
-std::vector<Event> shuffled(std::vector<Topic> topics, std::mt19937& random) {
+std::vector<Event> shuffled(std::vector<TopicEvents> topics, std::mt19937& random) {
   std::vector<Event> events;
   while (!topics.empty()) {
     const std::size_t chosen = random() % topics.size();
@@ -21,8 +21,8 @@ std::vector<Event> shuffled(std::vector<Topic> topics, std::mt19937& random) {
   return events;
 }
 
-Topic lines_of(const Story& story, int first, int end, std::optional<int> lost) {
-  Topic lines;
+TopicEvents lines_of(const Story& story, int first, int end, std::optional<int> lost) {
+  TopicEvents lines;
   for (int index = first; index < end; ++index) {
     if (index != lost) lines.emplace_back(story.line(index));
   }
@@ -30,8 +30,8 @@ Topic lines_of(const Story& story, int first, int end, std::optional<int> lost) 
 }
 
 // A sweep whose axis comes in pieces.
-Topic axis_of(const Story& story) {
-  Topic topic;
+TopicEvents axis_of(const Story& story) {
+  TopicEvents topic;
   for (const double part : {0.0, 0.3, 0.55, 1.0}) {
     const double length_ns = static_cast<double>(story.window_end_ns() - story.window_start_ns());
     msg::AxisSample sample;
@@ -50,7 +50,7 @@ TEST(Overtaking, AnyInterleavingOfTheTopicsGivesTheSameCloud) {
   std::mt19937 random(7);
   for (int round = 0; round < 150; ++round) {
     const std::optional<int> lost = round % 2 == 0 ? std::nullopt : std::optional(1 + round % 10);
-    const std::vector<Topic> topics{
+    const std::vector<TopicEvents> topics{
         lines_of(story, -5, 16, lost),
         axis_of(story),
         {story.phase(msg::PHASE_ACCELERATING), story.cruising(),
@@ -65,8 +65,8 @@ TEST(Overtaking, AnyInterleavingOfTheTopicsGivesTheSameCloud) {
   }
 }
 
-Topic windows_of(const Story& story) {
-  Topic topic;
+TopicEvents windows_of(const Story& story) {
+  TopicEvents topic;
   for (std::uint32_t index = 0; index < story.lines; ++index) {
     msg::Sweep window = story.cruising();
     window.window_start_ns(story.line_time_ns(static_cast<int>(index)) - 10 * kMillisecondNs);
@@ -104,7 +104,7 @@ TEST(Overtaking, ACancelledSweepIsNeverTheLastWordWhole) {
   cancel.time_ns(story.line_time_ns(8));
   std::mt19937 random(13);
   for (int round = 0; round < 150; ++round) {
-    const std::vector<Topic> topics{
+    const std::vector<TopicEvents> topics{
         lines_of(story, -5, 16, {}),
         axis_of(story),
         {story.cruising(), cancel, story.phase(msg::PHASE_IDLE, "cancelled")}};

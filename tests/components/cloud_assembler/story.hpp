@@ -37,7 +37,7 @@ RigGeometry story_geometry();  // no two numbers alike
 AssemblyOptions story_options();
 
 using Event = std::variant<msg::Sweep, msg::Axis, msg::ScanLine>;
-using Topic = std::vector<Event>;
+using TopicEvents = std::vector<Event>;
 
 // An assembler and all that came out of it.
 class Stage {

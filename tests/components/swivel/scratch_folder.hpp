@@ -17,7 +17,10 @@ class ScratchFolder {
     std::string pattern = testing::TempDir() + "swivel_tool_XXXXXX";
     path_ = mkdtemp(pattern.data());
   }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ~ScratchFolder() {
+    std::error_code still_written_to;
+    std::filesystem::remove_all(path_, still_written_to);
+  }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 

@@ -238,6 +238,10 @@ TEST(Refusals, EndWithTheirCodeAndOneLineThatSaysWhatToDo) {
            {"report " + recording("corridor.csv.gz") + out, 65, "no axis angle"},
            {"report " + recording("plate_period") + out + " --truth /nowhere.csv", 66, "nowhere"},
            {"report live --calibration x.yaml" + out, 64, "live"},
+           {"view --listen robot.local", 64, "no IP address"},
+           {"view --token short", 64, "16 or more"},
+           {"view --listen 0.0.0.0 --port 0 --token-file /nowhere/token", 73, "/nowhere/token"},
+           {"view --listen 203.0.113.1 --token 0123456789abcdef", 69, "--port"},
            {"calibrate alpha " + recording("pan_sparse") + out, 78, "plate"},
            {"calibrate alpha " + recording("plate_period") + out, 65, "sweeps"}}) {
     const Ended ended = run(scratch, refusal.arguments);
