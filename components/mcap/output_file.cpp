@@ -53,12 +53,16 @@ OutputFile::~OutputFile() {
 }
 
 Outcome OutputFile::append(std::string_view bytes) {
+  if (broken_) return Failure{part_of(name_) + " has a hole, since a write failed"};
   crc_ = mcap_crc(bytes, crc_);
   size_ += bytes.size();
   while (!bytes.empty()) {
     const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return failure("cannot be written");
+    if (written <= 0) {
+      broken_ = true;
+      return failure("cannot be written");
+    }
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
   return Done{};

@@ -18,9 +18,9 @@ class OutputFile {
   OutputFile& operator=(OutputFile&&) = delete;
   ~OutputFile();  // what is not finished stays as NAME.part
 
-  Outcome append(std::string_view bytes);
-  Outcome sync();    // returns once the disk has it
-  Outcome finish();  // syncs, closes, renames
+  Outcome append(std::string_view bytes);  // after one that failed all fail
+  Outcome sync();                          // returns once the disk has it
+  Outcome finish();                        // syncs, closes, renames
 
   std::uint64_t size() const { return size_; }
   std::uint32_t crc() const { return crc_; }  // of all bytes so far
@@ -34,6 +34,7 @@ class OutputFile {
   int descriptor_;
   std::uint64_t size_ = 0;
   std::uint32_t crc_ = 0;
+  bool broken_ = false;
 };
 
 // Where a file is until it is finished.

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   add_status(app, stop, verb);
   add_scan(app, stop, verb);
   add_calibrate(app, stop, verb);
+  add_record(app, stop, verb);
   add_replay(app, stop, verb);
   add_process(app, verb);
   add_report(app, stop, verb);

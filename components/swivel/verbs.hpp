@@ -15,6 +15,7 @@ void add_up(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_status(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_scan(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen);
+void add_record(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_replay(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_process(CLI::App& app, Verb& chosen);
 void add_report(CLI::App& app, StopSignal& stop, Verb& chosen);
