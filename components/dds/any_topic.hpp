@@ -20,6 +20,10 @@ struct AnyTopic {
   std::string full_name(const std::string& rig) const {
     return Topic<void>{name, for_ros}.full_name(rig);
   }
+  template <class Message>
+  bool is(const Topic<Message>& topic) const {
+    return std::string_view(name) == topic.name;
+  }
 };
 
 const std::vector<AnyTopic>& all_topics();

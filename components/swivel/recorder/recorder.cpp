@@ -2,8 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cstring>
-
 #include "components/common/program.hpp"
 #include "hardware/io/clock.hpp"
 
@@ -95,7 +93,7 @@ void Recorder::keep(RecordedSample sample) {
          (kept_.front().log_time_ns < oldest_ns || kept_bytes_ > options_.last_bytes)) {
     RecordedSample& oldest = kept_.front();
     kept_bytes_ -= oldest.size_bytes();
-    if (std::strcmp(oldest.topic->name, kCalibrationTopic.name) == 0) {
+    if (oldest.topic->is(kCalibrationTopic)) {
       calibrations_[oldest.sample.writer] = std::move(oldest);
     }
     kept_.pop_front();
