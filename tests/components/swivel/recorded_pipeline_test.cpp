@@ -76,6 +76,8 @@ TEST(RecordedPipeline, WhatWasRecordedGivesTheSameCloudsBitForBitWhenItIsReplaye
     EXPECT_GE(messages.size(), 2U) << topic;
     EXPECT_TRUE(messages == recorded(second, topic)) << topic;
   }
+  // Of two writers, and so in any order: the assembler's are made again, not played.
+  EXPECT_EQ(recorded(first, "swivel/sweep").size(), recorded(second, "swivel/sweep").size());
   EXPECT_EQ(run_swivel(scratch, "check " + second), 0) << content_of(scratch.file("out"));
 }
 
