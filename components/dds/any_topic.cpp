@@ -33,7 +33,7 @@ class CopiedType : public TopicDataType {
     if (cdr.size() < kHeadingSize || cdr.size() > payload->max_size) return false;
     std::memcpy(payload->data, cdr.data(), cdr.size());
     payload->length = static_cast<std::uint32_t>(cdr.size());
-    payload->encapsulation = static_cast<std::uint16_t>(cdr[1]);
+    payload->encapsulation = static_cast<std::uint8_t>(cdr[1]);
     return true;
   }
 

@@ -162,8 +162,12 @@ Participant::~Participant() {
 fast::Topic* Participant::make_topic(const std::string& name, const fast::TypeSupport& type) {
   // A type is registered once, and the first decides what its samples look like in memory.
   const fast::TypeSupport registered = participant_->find_type(type.get_type_name());
-  if (!registered.empty() && typeid(*registered.get()) != typeid(*type.get())) {
-    throw DdsError("topic " + name + ": " + type.get_type_name() + " is used typed and as CDR");
+  if (!registered.empty()) {
+    const fast::TopicDataType& before = *registered.get();
+    const fast::TopicDataType& now = *type.get();
+    if (typeid(before) != typeid(now)) {
+      throw DdsError("topic " + name + ": " + type.get_type_name() + " is used typed and as CDR");
+    }
   }
   if (const auto known = topics_.find(name); known != topics_.end()) return known->second;
   type.register_type(participant_);

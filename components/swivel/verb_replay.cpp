@@ -40,6 +40,7 @@ struct Replay {
 
 std::vector<std::string> full_names(const std::vector<AnyTopic>& topics, const std::string& rig) {
   std::vector<std::string> names;
+  names.reserve(topics.size());
   for (const AnyTopic& topic : topics) names.push_back(topic.full_name(rig));
   return names;
 }

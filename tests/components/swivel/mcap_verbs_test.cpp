@@ -27,7 +27,7 @@ class McapVerbs : public testing::Test {
     for (std::uint32_t line = 0; line < 100; ++line) {
       const std::int64_t time_ns = kStart_ns + line * std::int64_t{100'000'000};
       if (line == 57) continue;
-      EXPECT_TRUE(writer->write({*lines, line, time_ns, time_ns, "line"}));
+      EXPECT_TRUE(writer->write({*lines, line, time_ns, time_ns - 30'000'000, "line"}));
       EXPECT_TRUE(line % 10 != 9 || writer->end_chunk());
     }
     EXPECT_TRUE(writer->close());
@@ -81,6 +81,20 @@ TEST_F(McapVerbs, CheckSeesAFlippedBit) {
   std::ofstream(path_, std::ios::binary) << bytes;
   EXPECT_EQ(run_swivel(scratch_, "check " + path_), 65);
   EXPECT_THAT(content_of(scratch_.file("out")), HasSubstr("sum"));
+}
+
+TEST_F(McapVerbs, HzTellsTheRateAndTheLongestWait) {
+  ASSERT_EQ(run_swivel(scratch_, "hz --json " + path_ + " scan_line"), 0);
+  const auto json = nlohmann::json::parse(content_of(scratch_.file("out")))["rig/scan_line"];
+  EXPECT_EQ(json["messages"], 99);
+  EXPECT_NEAR(json["rate_hz"], 98 / 9.9, 1e-6);
+  EXPECT_NEAR(json["interval_ms"]["largest"], 200.0, 1e-3);
+  EXPECT_NEAR(json["delay_ms"]["largest"], 30.0, 1e-3);
+}
+
+TEST_F(McapVerbs, EchoDoesNotMakeSenseOfWhatHasNone) {
+  EXPECT_EQ(run_swivel(scratch_, "echo --json " + path_), 65);
+  EXPECT_THAT(content_of(scratch_.file("err")), HasSubstr("100 messages could not be decoded"));
 }
 
 TEST_F(McapVerbs, SayWhyAFileCannotBeRead) {
