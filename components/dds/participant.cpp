@@ -12,10 +12,12 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fstream>
+#include <typeinfo>
 
 namespace swivel {
 
 namespace fast = eprosima::fastdds::dds;
+using eprosima::fastrtps::rtps::GuidPrefix_t;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 
 // Hears of other participants on Fast DDS's threads, where nothing else may be done, and keeps
@@ -34,6 +36,7 @@ class PeerListener : public fast::DomainParticipantListener {
     {
       const std::lock_guard lock(mutex_);
       news_.push_back({info.info.m_participantName.c_str(), info.status});
+      names_[info.info.m_guid.guidPrefix] = info.info.m_participantName.c_str();
     }
     woken_.set_trigger_value(true);
   }
@@ -43,10 +46,18 @@ class PeerListener : public fast::DomainParticipantListener {
     return std::exchange(news_, {});
   }
 
+  // Also of those that have left; empty if never seen.
+  std::string name_of(const GuidPrefix_t& peer) const {
+    const std::lock_guard lock(mutex_);
+    const auto name = names_.find(peer);
+    return name == names_.end() ? "" : name->second;
+  }
+
  private:
   fast::GuardCondition& woken_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::deque<News> news_;
+  std::map<GuidPrefix_t, std::string> names_;
 };
 
 struct Participant::Endpoint {
@@ -163,6 +174,15 @@ Participant::~Participant() {
 }
 
 fast::Topic* Participant::make_topic(const std::string& name, const fast::TypeSupport& type) {
+  // A type is registered once, and the first decides what its samples look like in memory.
+  const fast::TypeSupport registered = participant_->find_type(type.get_type_name());
+  if (!registered.empty()) {
+    const fast::TopicDataType& before = *registered.get();
+    const fast::TopicDataType& now = *type.get();
+    if (typeid(before) != typeid(now)) {
+      throw DdsError("topic " + name + ": " + type.get_type_name() + " is used typed and as CDR");
+    }
+  }
   if (const auto known = topics_.find(name); known != topics_.end()) return known->second;
   type.register_type(participant_);
   auto* const topic =
@@ -319,6 +339,10 @@ void Participant::report_peers() {
   }
 }
 
+std::string Participant::name_of_peer(const eprosima::fastrtps::rtps::GUID_t& writer) const {
+  return peers_->name_of(writer.guidPrefix);
+}
+
 void Participant::count_gap(const std::string& topic, std::uint64_t& last, std::uint64_t number) {
   if (last != 0 && number > last + 1) {
     const std::uint64_t missing = number - last - 1;
@@ -331,6 +355,20 @@ void Participant::count_gap(const std::string& topic, std::uint64_t& last, std::
 void Participant::warn(const std::string& problem) {
   spdlog::warn("{}", problem);
   if (on_problem_) on_problem_(problem);
+}
+
+bool AnyWriter::wait_until_acknowledged(std::chrono::milliseconds timeout) {
+  const auto milliseconds = timeout.count();
+  return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(
+             static_cast<std::int32_t>(milliseconds / 1000),
+             static_cast<std::uint32_t>(milliseconds % 1000) * 1000000U)) ==
+         ReturnCode_t::RETCODE_OK;
+}
+
+std::size_t AnyWriter::reader_count() const {
+  fast::PublicationMatchedStatus status;
+  writer_->get_publication_matched_status(status);
+  return static_cast<std::size_t>(status.current_count);
 }
 
 }  // namespace swivel

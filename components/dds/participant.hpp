@@ -49,6 +49,16 @@ struct DdsError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A sample as it came over the wire, not decoded.
+struct CdrSample {
+  std::string cdr;           // with its heading of four bytes
+  std::uint64_t number = 0;  // of its writer's samples, as DDS counts them
+  std::int64_t sent_time_ns = 0;
+  std::string writer;       // tells writers of one topic apart
+  std::string participant;  // the writer's: "swivel/hokuyo_reader"
+};
+
+struct AnyTopic;
 class PeerListener;
 
 class Participant {
@@ -63,6 +73,8 @@ class Participant {
   // others. Throws DdsError.
   template <class Message>
   void subscribe(const Topic<Message>& topic, std::function<void(const Message&)> callback);
+  // Not together with a typed subscription or writer of the same type.
+  void subscribe_cdr(const AnyTopic& topic, std::function<void(CdrSample&&)> callback);
   void on_tick(std::chrono::milliseconds period, std::function<void()> callback);
   // Told, in words, of unmatched QoS, lost samples and vanished peers. They are logged anyhow.
   void on_problem(std::function<void(const std::string&)> callback);
@@ -80,6 +92,7 @@ class Participant {
  private:
   template <class Message>
   friend class Writer;
+  friend class CdrWriter;
   struct Endpoint;
 
   eprosima::fastdds::dds::Topic* make_topic(const std::string& name,
@@ -90,6 +103,7 @@ class Participant {
                                                   const eprosima::fastdds::dds::TypeSupport& type);
   void watch(eprosima::fastdds::dds::DataReader* reader, const std::string& topic, bool numbered,
              std::function<void()> take);
+  std::string name_of_peer(const eprosima::fastrtps::rtps::GUID_t& writer) const;
   void count_gap(const std::string& topic, std::uint64_t& last, std::uint64_t number);
   void warn(const std::string& problem);
   void run();
@@ -131,14 +145,26 @@ eprosima::fastdds::dds::TypeSupport make_type() {
   return type;
 }
 
+// What writers of every type have in common.
+class AnyWriter {
+ public:
+  // Until every reader has what was written; false when the time is over.
+  bool wait_until_acknowledged(std::chrono::milliseconds timeout);
+  std::size_t reader_count() const;
+
+ protected:
+  explicit AnyWriter(eprosima::fastdds::dds::DataWriter* writer) : writer_(writer) {}
+  eprosima::fastdds::dds::DataWriter* writer_;
+};
+
 // Writes from any thread. Must not outlive its participant.
 template <class Message>
-class Writer {
+class Writer : public AnyWriter {
  public:
   Writer(Participant& participant, const swivel::Topic<Message>& topic)
-      : rig_(participant.rig()),
-        topic_(topic.full_name(rig_)),
-        writer_(participant.make_writer(topic_, topic.name, make_type<Message>())) {}
+      : AnyWriter(participant.make_writer(topic.full_name(participant.rig()), topic.name,
+                                          make_type<Message>())),
+        rig_(participant.rig()) {}
 
   // Fills rig and sequence number. False if it could not be sent within the topic's
   // max_blocking_time, and counted as such.
@@ -154,28 +180,11 @@ class Writer {
   }
   bool write(Message&& message) { return write(message); }
 
-  // Until every reader has what was written; false when the time is over.
-  bool wait_until_acknowledged(std::chrono::milliseconds timeout) {
-    const auto milliseconds = timeout.count();
-    return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(
-               static_cast<std::int32_t>(milliseconds / 1000),
-               static_cast<std::uint32_t>(milliseconds % 1000) * 1000000U)) ==
-           ReturnCode_t::RETCODE_OK;
-  }
-
-  std::size_t reader_count() const {
-    eprosima::fastdds::dds::PublicationMatchedStatus status;
-    writer_->get_publication_matched_status(status);
-    return static_cast<std::size_t>(status.current_count);
-  }
-
   std::uint64_t written() const { return next_number_ - 1; }
   std::uint64_t failures() const { return failures_; }
 
  private:
   std::string rig_;
-  std::string topic_;
-  eprosima::fastdds::dds::DataWriter* writer_;
   std::mutex mutex_;
   std::atomic<std::uint64_t> next_number_{1};
   std::atomic<std::uint64_t> failures_{0};

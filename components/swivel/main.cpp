@@ -16,7 +16,11 @@ int main(int argc, char** argv) {
   add_status(app, stop, verb);
   add_scan(app, stop, verb);
   add_calibrate(app, stop, verb);
+  add_record(app, stop, verb);
   add_replay(app, stop, verb);
+  add_topic_verbs(app, stop, verb);
+  add_export(app, verb);
+  add_mcap_verbs(app, verb);
   add_process(app, verb);
   add_report(app, stop, verb);
   add_view(app, verb);

@@ -31,6 +31,7 @@ struct DemoOptions {
   int calibration_mode = 3;
   int calibration_sweeps = 3;
   std::uint64_t seed = 3;
+  std::string recording;  // empty: none
 };
 
 struct BenchAddresses {
@@ -51,6 +52,46 @@ BenchAddresses await_bench(ChildProcess& bench) {
   }
   return addresses;
 }
+
+// Records all that the demo's participants say, as a user would.
+class DemoRecorder {
+ public:
+  DemoRecorder(const CommonOptions& common, const std::string& path) {
+    if (path.empty()) return;
+    const std::vector<std::string> arguments{"record",
+                                             "-o",
+                                             path,
+                                             "--rig",
+                                             common.rig_file,
+                                             "--domain",
+                                             std::to_string(common.domain),
+                                             "--network",
+                                             common.network,
+                                             "--profiles",
+                                             common.profiles_file};
+    process_ = std::make_unique<ChildProcess>("swivel", arguments);
+  }
+
+  // It has said why on stderr.
+  void check() {
+    if (const auto how = process_ ? process_->ended() : std::nullopt) {
+      throw ExitError(kExitInputOutput, "the demo is not recorded: " + *how);
+    }
+  }
+
+  void finish() {
+    if (!process_) return;
+    check();
+    process_->ask_to_stop();
+    if (!process_->wait_or_kill(kPatience) || process_->exit_code() != kExitOk) {
+      throw ExitError(kExitInputOutput, "the recording of the demo is not whole");
+    }
+  }
+
+ private:
+  static constexpr auto kPatience = std::chrono::seconds(20);  // a slow disk
+  std::unique_ptr<ChildProcess> process_;
+};
 
 // Of phi_offset, in deg between -180 and 180.
 double attitude_error_deg(const msg::Attitude& attitude, double true_phi_deg) {
@@ -79,6 +120,7 @@ int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal
                       "--home-sigma-deg", kHomeSigma_deg, "--log-level", "warning"},
                      true);
   const BenchAddresses addresses = await_bench(bench);
+  DemoRecorder recorder(common, options.recording);
   CommonOptions quiet = common;
   quiet.log_level = "warning";
   const Participants participants(
@@ -93,6 +135,7 @@ int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal
   const std::string missing = roll.await(participants_of("all"), std::chrono::seconds(30));
   if (!missing.empty()) throw ExitError(kExitUnavailable, missing);
 
+  recorder.check();
   std::cout << "alpha is calibrated from the walls ..." << std::endl;
   calibration.run(options.calibration_mode, options.calibration_sweeps, 0.0, stop);
   int good = 0;
@@ -103,6 +146,7 @@ int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal
   }
   output.note("true_alpha_deg", TruthFile(truth_path).number("alpha_deg").value_or(NAN));
   output.finish();
+  recorder.finish();
   std::cout << "see " << options.folder << "/top_view.png, cloud.ply, report.json" << std::endl;
   return good == static_cast<int>(options.modes.size()) ? kExitOk : kExitBadData;
 }
@@ -124,6 +168,7 @@ void add_demo(CLI::App& app, StopSignal& stop, Verb& chosen) {
   verb->add_option("--calibration-sweeps", options->calibration_sweeps, "How many of them")
       ->capture_default_str();
   verb->add_option("--seed", options->seed, "Of the bench")->capture_default_str();
+  verb->add_option("--record", options->recording, "FILE.mcap: all that is said, recorded");
   add_common_options(*verb, *common);
   verb->callback(
       [=, &stop, &chosen] { chosen = [=, &stop] { return run_demo(*common, *options, stop); }; });
