@@ -1,54 +1,27 @@
 #include "components/gateway/channels.hpp"
 
-#include "components/dds/topics.hpp"
-#include "swivel_embedded.hpp"
+#include "components/dds/topic_schema.hpp"
 
 namespace swivel {
 namespace {
 
-// As ROS 2 describes the type to Foxglove; on the wire it is idl/point_cloud2.idl.
-constexpr const char* kPointCloud2Schema = R"(std_msgs/Header header
-uint32 height
-uint32 width
-sensor_msgs/PointField[] fields
-bool is_bigendian
-uint32 point_step
-uint32 row_step
-uint8[] data
-bool is_dense
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: sensor_msgs/PointField
-string name
-uint32 offset
-uint8 datatype
-uint32 count
-)";
-
 template <class Message>
-FoxgloveChannel channel(ChannelId id, const Topic<Message>& topic, const std::string& rig,
-                        const std::string& type) {
-  return {id, topic.full_name(rig), "swivel::msg::" + type, "omgidl", std::string(kSwivelIdl)};
+FoxgloveChannel channel(ChannelId id, const Topic<Message>& topic, const std::string& rig) {
+  const std::string name = topic.full_name(rig);
+  const TopicSchema schema = schema_of(find_topic(name)->topic);
+  return {id, name, schema.name, schema.encoding, schema.text};
 }
 
 }  // namespace
 
 std::vector<FoxgloveChannel> foxglove_channels(const std::string& rig) {
-  return {channel(kScanLineChannel, kScanLineTopic, rig, "ScanLine"),
-          channel(kAxisChannel, kAxisTopic, rig, "Axis"),
-          channel(kSweepChannel, kSweepTopic, rig, "Sweep"),
-          channel(kAttitudeChannel, kAttitudeTopic, rig, "Attitude"),
-          channel(kCalibrationChannel, kCalibrationTopic, rig, "Calibration"),
-          channel(kHealthChannel, kHealthTopic, rig, "Health"),
-          {kCloudChannel, kCloudTopic.full_name(rig), "sensor_msgs/msg/PointCloud2", "ros2msg",
-           kPointCloud2Schema}};
+  return {channel(kScanLineChannel, kScanLineTopic, rig),
+          channel(kAxisChannel, kAxisTopic, rig),
+          channel(kSweepChannel, kSweepTopic, rig),
+          channel(kAttitudeChannel, kAttitudeTopic, rig),
+          channel(kCalibrationChannel, kCalibrationTopic, rig),
+          channel(kHealthChannel, kHealthTopic, rig),
+          channel(kCloudChannel, kCloudTopic, rig)};
 }
 
 }  // namespace swivel

@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "components/dds/cdr.hpp"
+#include "components/dds/any_topic.hpp"
 #include "components/gateway/channels.hpp"
 #include "components/gateway/metrics.hpp"
 #include "components/gateway/page_messages.hpp"
@@ -74,7 +74,7 @@ template <class Message, class Take>
 void Gateway::pass_on(Participant& participant, const Topic<Message>& topic, std::uint32_t channel,
                       Take take) {
   participant.subscribe<Message>(topic, [this, channel, take](const Message& message) {
-    if (server_.wanted(channel)) server_.publish(channel, now_ns(), cdr_of(message));
+    if (server_.wanted(channel)) server_.publish(channel, now_ns(), encode_cdr(message));
     const std::lock_guard lock(mutex_);
     take(message);
   });

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "components/dds/cdr.hpp"
+#include "components/dds/any_topic.hpp"
 #include "components/gateway/channels.hpp"
 #include "components/gateway/metrics.hpp"
 
@@ -91,7 +91,7 @@ TEST(Foxglove, AMessageIsTheBytesThatDdsSends) {
   sweep.rig("rig7");
   sweep.sweep_id(77);
   sweep.reason("because");
-  const std::string bytes = cdr_of(sweep);
+  const std::string bytes = encode_cdr(sweep);
   EXPECT_EQ(bytes.substr(0, 4), std::string("\0\1\0\0", 4)) << "CDR, little endian";
   eprosima::fastrtps::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
   payload.length = payload.max_size;
