@@ -89,6 +89,7 @@ PlateGeometry read_plate(YamlSection section) {
 
 ModesSection read_modes(YamlSection section) {
   ModesSection modes;
+  modes.line_period_s = 1e-3 * section.number("line_period_ms", {5.0, 1000.0}, 25.0);
   modes.sweep_angle_deg = section.number("sweep_angle_deg", {1.0, 360.0});
   YamlSection lines = section.section("lines");
   for (const std::string& key : lines.keys()) {

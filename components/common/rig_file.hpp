@@ -26,6 +26,7 @@ struct StepperSection {
 };
 
 struct ModesSection {
+  double line_period_s = 0.025;  // nominal, of the lidar
   double sweep_angle_deg = 180.0;
   std::map<int, int> lines;  // mode -> scan lines of a sweep
 };

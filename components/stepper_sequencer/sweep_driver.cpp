@@ -14,6 +14,9 @@ constexpr std::int64_t kArrivalPollNs = 20'000'000;
 // From the controller's ok to its first step, at most; it is Idle until then.
 constexpr std::int64_t kStartGraceNs = 250'000'000;
 constexpr double kOverdueS = 2.0;
+// A measured shaft stands where the motor took it, and that is not a whole step of its encoder;
+// what is further off has lost steps.
+constexpr double kMeasuredTolerance_deg = 0.5;
 
 std::int64_t after(std::int64_t time_ns, double seconds) {
   return time_ns + std::llround(seconds * 1e9);
@@ -189,7 +192,9 @@ Outcome SweepDriver::arrive(const Turn& turn, double speed_deg_s) {
 }
 
 bool SweepDriver::is_there(const StepperStatus& status, double angle_deg) const {
-  const double tolerance_deg = 0.5 / stepper_.settings().steps_per_deg + 0.002;  // of the report
+  const double step_deg = 1.0 / stepper_.settings().steps_per_deg;
+  const double tolerance_deg =
+      options_.axis_measured ? kMeasuredTolerance_deg : 0.5 * step_deg + 0.002;  // of the report
   return std::abs(status.angle_deg - angle_deg) <= tolerance_deg;
 }
 
@@ -201,6 +206,7 @@ Result<StepperStatus> SweepDriver::look() {
   if (!std::isfinite(status->angle_deg))
     return Failure{"the controller's reports hold no position; send $10=1"};
   angle_deg_ = status->angle_deg;
+  announcer_.position(*status);
   return status;
 }
 
