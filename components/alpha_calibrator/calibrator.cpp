@@ -46,6 +46,7 @@ std::string Calibrator::why_not_taken(const msg::CalibrationRequest& request) co
   if (run_) return "busy with another calibration; try again when it is done";
   if (request.request_id() == 0) return "the request has no id; choose one that is not 0";
   if (request.count() == 0) return "no sweep is asked for; ask for some, 3 at least";
+  if (!rig_.plate) return "rig " + rig_.rig + " has no plate, so there is no alpha to calibrate";
   if (!std::isfinite(request.room_yaw_deg())) return "the room's yaw is not a number";
   return {};
 }

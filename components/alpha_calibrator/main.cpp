@@ -58,7 +58,6 @@ LidarName lidar_name(const msg::Health& health) {
 void calibrate(const CommonOptions& options, const std::string& calibration_path,
                StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
-  if (!rig.plate) throw ConfigurationError(rig.path + ": has no 'plate' to calibrate");
   Participant participant(options.participant("alpha_calibrator", rig.rig));
   HealthReporter health(participant);
   CalibrationStore store(
