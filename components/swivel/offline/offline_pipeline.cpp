@@ -54,9 +54,13 @@ void run_offline(Recording recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
                  const std::function<void(ProcessedSweep&&)>& on_sweep) {
   Corrector corrector(rig);
-  if (calibration) corrector.set_calibration(*calibration);
-  const AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
-                                rad_from_deg(rig.modes.sweep_angle_deg)};
+  AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
+                          rad_from_deg(rig.modes.sweep_angle_deg)};
+  if (calibration) {
+    const std::string wrong = corrector.set_calibration(*calibration);
+    if (!wrong.empty()) throw ExitError(kExitBadData, "the calibration was refused: " + wrong);
+    options.geometry = calibrated_geometry(rig.geometry, *calibration);
+  }
   Assembler assembler(options, [&](AssembledSweep&& assembled) {
     ProcessedSweep processed;
     processed.index = assembled.sweep.sweep_id() - 1;
