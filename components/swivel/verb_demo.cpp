@@ -4,6 +4,7 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -29,7 +30,7 @@ constexpr int kDemoDomain = 73;  // so that a demo does not meet a scanner at wo
 constexpr const char* kHomeSigma_deg = "4";
 
 // A lidar that was not put on as drawn, on a rig that measures its axis.
-const std::vector<std::string> kMountingOff{
+constexpr std::array<const char*, 6> kMountingOff{
     "--bias-deg", "3", "--mounting-rpy-deg", "0,0.4,0", "--mounting-xyz-mm", "2,-3,0"};
 
 struct DemoOptions {

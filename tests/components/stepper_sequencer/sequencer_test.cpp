@@ -234,15 +234,14 @@ TEST(MeasuredAxis, TakesTheReportsWhoseInstantIsCertain) {
     const double error_deg =
         sample->angle_deg() - kSpeed_deg_s * 1e-9 * static_cast<double>(sample->time_ns());
     EXPECT_LE(std::abs(error_deg), kSpeed_deg_s * 0.5e-9 * static_cast<double>(trip_ns) + 1e-6);
-    EXPECT_TRUE(last_ns == 0 || sample->time_ns() - last_ns <= 130'000'000);
+    EXPECT_TRUE(last_ns == 0 || sample->time_ns() - last_ns <= 230'000'000);
     last_ns = sample->time_ns();
     squares += error_deg * error_deg;
     ++taken;
   }
   EXPECT_EQ(static_cast<std::uint64_t>(taken) + axis.left_out(), 2000U);
-  EXPECT_GT(taken, 400);
-  // All of them: 0.2 deg.
-  EXPECT_LT(std::sqrt(squares / taken), 0.08);
+  EXPECT_GT(taken, 300);
+  EXPECT_LT(std::sqrt(squares / taken), 0.1);  // of all of them it is 0.2 deg
 }
 
 TEST(MeasuredAxis, LeavesOutWhatIsNoAngleOrNotLater) {
