@@ -1,4 +1,5 @@
 // swivel calibrate alpha: the plate's true azimuth, by a live rig or from a recording's sweeps.
+// swivel calibrate mounting: how the lidar stands on the axis, from a recording's sweeps.
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "components/swivel/live/participants.hpp"
 #include "components/swivel/live/roll.hpp"
 #include "components/swivel/offline/offline_pipeline.hpp"
+#include "components/swivel/offline/recorded_mounting.hpp"
 #include "components/swivel/offline/text_file.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
@@ -75,6 +77,25 @@ int calibrate_live(const CommonOptions& common, const CalibrateOptions& options,
   return kExitOk;
 }
 
+void add_calibrate_mounting(CLI::App& calibrate, Verb& chosen) {
+  CLI::App* const verb = calibrate.add_subcommand(
+      "mounting", "How the lidar stands on the axis, and the bias of its centreline");
+  const auto options = std::make_shared<RecordedMountingOptions>();
+  verb->add_option("recording", options->recording, "A case folder, or a .csv.gz recording")
+      ->required();
+  verb->add_option("-o,--output", options->folder,
+                   "The folder for mounting.json and calibration.yaml")
+      ->required();
+  verb->add_flag("--per-sweep", options->per_sweep, "Each sweep alone, instead of all together");
+  verb->add_option("--rig", options->rig_file, "The rig file [that which suits the recording]");
+  verb->callback([options, &chosen] {
+    chosen = [options] {
+      calibrate_recorded_mounting(*options);
+      return kExitOk;
+    };
+  });
+}
+
 }  // namespace
 
 void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
@@ -106,6 +127,7 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->capture_default_str()
       ->needs(recording);
   add_common_options(*verb, *common);
+  add_calibrate_mounting(*calibrate, chosen);
   verb->callback([=, &stop, &chosen] {
     options->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
     chosen = [=, &stop] {
