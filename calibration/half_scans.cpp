@@ -17,9 +17,9 @@ constexpr double kNarrowestOfCell = 0.08;
 constexpr double kFloorM = 0.002;  // no mean of a cell is known better: surfaces are not flat
 constexpr double kRobustSigmas = 2.0;
 constexpr double kLeastIncidence = 0.3;
-constexpr std::size_t kRaysCompared = 120'000;  // are enough to come near
-constexpr std::array<double, 12> kCellSizesM = {0.8, 0.8, 0.8, 0.6, 0.6, 0.6,
-                                                0.4, 0.4, 0.4, 0.3, 0.3, 0.3};
+constexpr std::size_t kRaysCompared = 60'000;  // are enough to come near
+constexpr std::size_t kFewestCells = 30;
+constexpr std::array<double, 9> kCellSizesM = {0.8, 0.8, 0.8, 0.6, 0.6, 0.4, 0.4, 0.3, 0.3};
 
 using CellKey = std::int64_t;
 
@@ -51,7 +51,7 @@ struct Cell {
 
 using Cells = std::unordered_map<CellKey, Cell>;
 
-// Calls visit(line, beam, range, angle, point at rest) of every ray that may speak.
+// Calls visit(line, beam, shaft, point at rest) of every ray that may speak.
 template <typename Visit>
 void for_each_ray(const SweepReadings& readings, const RayMask& left_out, const MountedBeams& beams,
                   const Visit& visit) {
@@ -62,9 +62,8 @@ void for_each_ray(const SweepReadings& readings, const RayMask& left_out, const 
       const double range_m = said.ranges_m[beam];
       if (!(range_m < kFurthestM)) continue;
       if (!left_out.empty() && left_out[line * count + beam] != 0) continue;
-      const double angle_rad = beams.axis_angle_rad(said, beam);
-      visit(line, beam, range_m, angle_rad,
-            turned_about_axis(beams.turning_point(beam, range_m), angle_rad));
+      const ShaftTurn shaft = beams.shaft_at(said, beam);
+      visit(line, beam, shaft, shaft.to_rest(beams.turning_point(beam, range_m)));
     }
   }
 }
@@ -92,7 +91,7 @@ Cells cells_of(const SweepReadings& readings, const std::vector<bool>& second,
                const RayMask& left_out, const MountedBeams& beams, double cell_m) {
   Cells cells;
   for_each_ray(readings, left_out, beams,
-               [&](std::size_t line, std::size_t, double, double, const Eigen::Vector3d& point) {
+               [&](std::size_t line, std::size_t, const ShaftTurn&, const Eigen::Vector3d& point) {
                  ViewOfCell& view = cells[cell_at(point, cell_m)].views[second[line] ? 1 : 0];
                  view.count += 1.0;
                  view.sum += point;
@@ -100,13 +99,13 @@ Cells cells_of(const SweepReadings& readings, const std::vector<bool>& second,
                });
   for (auto& [key, cell] : cells) cell.normal = normal_of(cell, cell_m);
   for_each_ray(readings, left_out, beams,
-               [&](std::size_t line, std::size_t beam, double range_m, double angle_rad,
+               [&](std::size_t line, std::size_t beam, const ShaftTurn& shaft,
                    const Eigen::Vector3d& point) {
                  Cell& cell = cells.at(cell_at(point, cell_m));
                  if (!cell.normal) return;
                  cell.views[second[line] ? 1 : 0].moves +=
-                     beams.moves_along(turned_about_axis(*cell.normal, -angle_rad),
-                                       readings.lines[line], beam, range_m);
+                     beams.moves_along(shaft.to_turning(*cell.normal), readings.lines[line], beam,
+                                       readings.lines[line].ranges_m[beam]);
                });
   return cells;
 }
@@ -206,6 +205,7 @@ std::optional<HalfScansFit> fit_half_scans(const SweepReadings& readings,
   for (const double cell_m : kCellSizesM) {
     const MountedBeams beams(nominal, fit.solution.value, thin);
     const HalfScanCells compared = compare_half_scans(thin, *second, {}, beams, cell_m);
+    if (compared.cells < kFewestCells) return std::nullopt;
     fit.cells = compared.cells;
     fit.residual_m = compared.residual_m;
     fit.solution = solve(compared.equations, fit.solution.value, prior);

@@ -35,7 +35,7 @@ struct HalfScansFit {
   double residual_m = 0.0;
 };
 
-// From coarse to fine. None where nothing is seen twice.
+// From coarse to fine. None where too little is seen twice.
 std::optional<HalfScansFit> fit_half_scans(const SweepReadings& readings,
                                            const RigGeometry& nominal, const MountingPrior& prior,
                                            const MountingVector& start);

@@ -69,9 +69,9 @@ MountedBeams::MountedBeams(const RigGeometry& rig, const MountingVector& mountin
   }
 }
 
-double MountedBeams::axis_angle_rad(const LineOfReadings& line, std::size_t beam) const {
-  return line.axis_angle_rad + static_cast<double>(beam) * line.angle_per_beam_rad +
-         (line.turning_down ? hysteresis_rad_ : 0.0);
+ShaftTurn MountedBeams::shaft_at(const LineOfReadings& line, std::size_t beam) const {
+  return ShaftTurn(line.axis_angle_rad + static_cast<double>(beam) * line.angle_per_beam_rad +
+                   (line.turning_down ? hysteresis_rad_ : 0.0));
 }
 
 MountingVector MountedBeams::moves_along(const Vector3d& normal, const LineOfReadings& line,
@@ -87,12 +87,6 @@ MountingVector MountedBeams::moves_along(const Vector3d& normal, const LineOfRea
       line.turning_down ? normal.y() * point.x() - normal.x() * point.y() : 0.0;
   moves[kRangeOffset] = -normal.dot(directions_[beam]);
   return moves;
-}
-
-Vector3d turned_about_axis(const Vector3d& vector, double angle_rad) {
-  const double c = std::cos(angle_rad);
-  const double s = std::sin(angle_rad);
-  return {c * vector.x() - s * vector.y(), s * vector.x() + c * vector.y(), vector.z()};
 }
 
 }  // namespace swivel

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <cmath>
 #include <vector>
 
 #include "calibration/rig.hpp"
@@ -30,14 +30,31 @@ MountingVector mounting_of(const RigGeometry& rig);
 // as they are.
 RigGeometry with_mounting(const RigGeometry& rig, const MountingVector& mounting);
 
+// The turn of the shaft by an axis angle: between the frame that turns and that which is at rest.
+class ShaftTurn {
+ public:
+  explicit ShaftTurn(double angle_rad) : cosine_(std::cos(angle_rad)), sine_(std::sin(angle_rad)) {}
+
+  Eigen::Vector3d to_rest(const Eigen::Vector3d& v) const {
+    return {cosine_ * v.x() - sine_ * v.y(), sine_ * v.x() + cosine_ * v.y(), v.z()};
+  }
+  Eigen::Vector3d to_turning(const Eigen::Vector3d& v) const {
+    return {cosine_ * v.x() + sine_ * v.y(), cosine_ * v.y() - sine_ * v.x(), v.z()};
+  }
+
+ private:
+  double cosine_;
+  double sine_;
+};
+
 // The beams of a sweep under a mounting, in the frame that turns with the shaft.
 class MountedBeams {
  public:
   MountedBeams(const RigGeometry& rig, const MountingVector& mounting,
                const SweepReadings& readings);
 
-  // Of beam `beam` of a line, dead time and hysteresis counted.
-  double axis_angle_rad(const LineOfReadings& line, std::size_t beam) const;
+  // At the instant of beam `beam` of a line, hysteresis counted.
+  ShaftTurn shaft_at(const LineOfReadings& line, std::size_t beam) const;
 
   const Eigen::Vector3d& direction(std::size_t beam) const { return directions_[beam]; }
   const Eigen::Vector3d& lever_arm_m() const { return lever_arm_m_; }
@@ -60,8 +77,5 @@ class MountedBeams {
   std::vector<Eigen::Vector3d> by_bias_;  // their derivatives
   std::vector<Eigen::Vector3d> by_tilt_;
 };
-
-// Between the frame that turns with the shaft and that in which it is at rest.
-Eigen::Vector3d turned_about_axis(const Eigen::Vector3d& vector, double angle_rad);
 
 }  // namespace swivel

@@ -54,20 +54,33 @@ double sigma_m(const SightedPlane& plane, double cosine) {
 class LineSighter {
  public:
   LineSighter(const MountedBeams& beams, const std::vector<SightedPlane>& planes)
-      : beams_(beams), planes_(planes), meetings_(planes.size()) {}
+      : beams_(beams),
+        planes_(planes),
+        normals_(planes.size()),
+        heights_m_(planes.size()),
+        meetings_(planes.size()) {}
 
   std::vector<RayOnPlane> sight(const LineOfReadings& line) {
     std::vector<RayOnPlane> rays(line.ranges_m.size());
+    turn(beams_.shaft_at(line, 0));
     for (std::size_t beam = 0; beam < rays.size(); ++beam) {
       if (std::isnan(line.ranges_m[beam])) continue;
-      rays[beam] = sight(beam, line.ranges_m[beam], beams_.axis_angle_rad(line, beam));
+      if (line.angle_per_beam_rad != 0.0) turn(beams_.shaft_at(line, beam));
+      rays[beam] = sight(beam, line.ranges_m[beam]);
     }
     return rays;
   }
 
  private:
-  RayOnPlane sight(std::size_t beam, double range_m, double angle_rad) {
-    meet_all(beam, angle_rad);
+  void turn(const ShaftTurn& shaft) {
+    for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
+      normals_[plane] = shaft.to_turning(planes_[plane].normal);
+      heights_m_[plane] = planes_[plane].distance_m + normals_[plane].dot(beams_.lever_arm_m());
+    }
+  }
+
+  RayOnPlane sight(std::size_t beam, double range_m) {
+    meet_all(beam);
     RayOnPlane ray;
     for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
       const Meeting& meeting = meetings_[plane];
@@ -81,12 +94,10 @@ class LineSighter {
     return ray;
   }
 
-  void meet_all(std::size_t beam, double angle_rad) {
+  void meet_all(std::size_t beam) {
     for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
-      const Vector3d normal = turned_about_axis(planes_[plane].normal, -angle_rad);
-      const double cosine = normal.dot(beams_.direction(beam));
-      const double height_m = planes_[plane].distance_m + normal.dot(beams_.lever_arm_m());
-      meetings_[plane] = {beams_.range_offset_m() - height_m / cosine, cosine};
+      const double cosine = normals_[plane].dot(beams_.direction(beam));
+      meetings_[plane] = {beams_.range_offset_m() - heights_m_[plane] / cosine, cosine};
     }
   }
 
@@ -104,6 +115,8 @@ class LineSighter {
 
   const MountedBeams& beams_;
   const std::vector<SightedPlane>& planes_;
+  std::vector<Vector3d> normals_;  // as the shaft stands, in the turning frame,
+  std::vector<double> heights_m_;  // and the lidar's centre over the planes
   std::vector<Meeting> meetings_;  // of the ray in work
 };
 
@@ -131,10 +144,9 @@ void leave_out_passing(const LineOfReadings& line, std::vector<RayOnPlane>& rays
 // Eq. (23): how far the expected range moves, over its sigma, taken where the plane is met.
 PlaneVector derivative_of(const RayOnPlane& ray, const SightedPlane& plane, const PlaneAxes& axes,
                           const MountedBeams& beams, const LineOfReadings& line, std::size_t beam) {
-  const double angle_rad = beams.axis_angle_rad(line, beam);
-  const Vector3d normal = turned_about_axis(plane.normal, -angle_rad);
-  const Vector3d met =
-      turned_about_axis(beams.turning_point(beam, ray.meeting.expected_m), angle_rad);
+  const ShaftTurn shaft = beams.shaft_at(line, beam);
+  const Vector3d normal = shaft.to_turning(plane.normal);
+  const Vector3d met = shaft.to_rest(beams.turning_point(beam, ray.meeting.expected_m));
   PlaneVector derivative;
   derivative << beams.moves_along(normal, line, beam, ray.meeting.expected_m), axes.along.dot(met),
       axes.across.dot(met), 1.0;

@@ -14,7 +14,7 @@ namespace swivel {
 namespace {
 
 constexpr double kLeastRayRad = rad_from_deg(3.0);  // from the axis: nearer ones tell nothing
-constexpr double kMostRayRad = rad_from_deg(60.0);  // further ones graze
+constexpr double kMostRayRad = rad_from_deg(45.0);  // further ones meet corners and walls
 constexpr double kMostTiltOfCentreline = 0.17;      // sine: 10 deg
 constexpr double kHeightStepM = 0.05;
 constexpr double kHeightBandM = 0.15;  // about the commonest height, as a bias of 5 deg bends it

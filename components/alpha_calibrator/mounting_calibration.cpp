@@ -22,17 +22,6 @@ constexpr std::array<MessagePlace, 4> kMessagePlaces{{{kMountingBias, kBias, deg
                                                       {kMountingLeverX, kMountingX, 1e3},
                                                       {kMountingLeverY, kMountingY, 1e3}}};
 
-std::string mounting_in_words(const MountingFit& fit) {
-  std::string words;
-  for (std::size_t name = 0; name < kMountingNames.size(); ++name) {
-    const MessagePlace& place = kMessagePlaces[name];
-    words += fmt::format("{}{} {:.4f} +- {:.4f} {}", words.empty() ? "" : ", ",
-                         kMountingNames[name], place.per_unit * fit.solution.value[place.value],
-                         place.per_unit * fit.sigma_of(place.value), name < 2 ? "deg" : "mm");
-  }
-  return words;
-}
-
 std::string joint_in_words(const JointMounting& joint, std::size_t sweeps) {
   std::string words = fmt::format(
       "{} from {} sweep{}; planes {:.1f} mm thick; chi-square {:.1f} of {:.0f}; not seen: {}",
@@ -43,6 +32,17 @@ std::string joint_in_words(const JointMounting& joint, std::size_t sweeps) {
 }
 
 }  // namespace
+
+std::string mounting_in_words(const MountingFit& fit) {
+  std::string words;
+  for (std::size_t name = 0; name < kMountingNames.size(); ++name) {
+    const MessagePlace& place = kMessagePlaces[name];
+    words += fmt::format("{}{} {:.4f} +- {:.4f} {}", words.empty() ? "" : ", ",
+                         kMountingNames[name], place.per_unit * fit.solution.value[place.value],
+                         place.per_unit * fit.sigma_of(place.value), name < 2 ? "deg" : "mm");
+  }
+  return words;
+}
 
 CalibrationAdded MountingCalibration::add(int mode, const MountingResult& result) {
   if (!result.fit) return {false, result.reason};

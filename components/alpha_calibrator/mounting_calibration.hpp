@@ -11,6 +11,9 @@
 
 namespace swivel {
 
+// "bias 3.7474 +- 0.0005 deg, ry ..."
+std::string mounting_in_words(const MountingFit& fit);
+
 class MountingCalibration {
  public:
   explicit MountingCalibration(const RigFile& rig) : rig_(rig) {}

@@ -1,5 +1,5 @@
 // swivel calibrate alpha: the plate's true azimuth, by a live rig or from a recording's sweeps.
-// swivel calibrate mounting: how the lidar stands on the axis, by a live rig.
+// swivel calibrate mounting: how the lidar stands on the axis, likewise.
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "components/swivel/live/participants.hpp"
 #include "components/swivel/live/roll.hpp"
 #include "components/swivel/offline/offline_pipeline.hpp"
+#include "components/swivel/offline/recorded_mounting.hpp"
 #include "components/swivel/offline/text_file.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
@@ -88,16 +89,29 @@ void add_calibrate_mounting(CLI::App& calibrate, StopSignal& stop, Verb& chosen)
   CLI::App* const verb = calibrate.add_subcommand(
       "mounting", "How the lidar stands on the axis, and the bias of its centreline");
   const auto common = std::make_shared<CommonOptions>();
-  const auto options = std::make_shared<CalibrateOptions>();
-  options->mode = 2;
-  options->count = 2;
-  add_live_options(*verb, *options);
+  const auto live = std::make_shared<CalibrateOptions>();
+  const auto recorded = std::make_shared<RecordedMountingOptions>();
+  live->mode = 2;
+  live->count = 2;
+  auto* const recording = verb->add_option("recording", recorded->recording,
+                                           "A case folder, or a .csv.gz recording; else live");
+  recording->needs(
+      verb->add_option("-o,--output", recorded->folder,
+                       "The folder for mounting.json and calibration.yaml, of a recording"));
+  verb->add_flag("--per-sweep", recorded->per_sweep, "Recorded: each sweep alone")
+      ->needs(recording);
+  add_live_options(*verb, *live);
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
+    recorded->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
     chosen = [=, &stop] {
-      return calibrate_live(
-          *common, calibration_request(msg::CALIBRATION_OF_MOUNTING, options->mode, options->count),
-          stop);
+      if (recorded->recording.empty()) {
+        return calibrate_live(
+            *common, calibration_request(msg::CALIBRATION_OF_MOUNTING, live->mode, live->count),
+            stop);
+      }
+      calibrate_recorded_mounting(*recorded);
+      return kExitOk;
     };
   });
 }

@@ -11,23 +11,11 @@ namespace {
 using sim::kRadPerDeg;
 using sim::Vector3;
 
-Vector3 turned_about_x(const Vector3& v, double angle_rad) {
-  const double c = std::cos(angle_rad);
-  const double s = std::sin(angle_rad);
-  return {v.x, c * v.y - s * v.z, s * v.y + c * v.z};
-}
-
-Vector3 turned_about_y(const Vector3& v, double angle_rad) {
-  const double c = std::cos(angle_rad);
-  const double s = std::sin(angle_rad);
-  return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
-}
-
 sim::Ray ray_of(const PanScan& scan, double shaft_deg, double beam_deg) {
   const double angle_rad = (beam_deg + scan.bias_deg) * kRadPerDeg;
   Vector3 direction{0.0, std::sin(angle_rad), std::cos(angle_rad)};
-  direction = turned_about_x(direction, scan.rx_deg * kRadPerDeg);
-  direction = turned_about_y(direction, scan.ry_deg * kRadPerDeg);
+  direction = sim::turned_about_x(direction, scan.rx_deg * kRadPerDeg);
+  direction = sim::turned_about_y(direction, scan.ry_deg * kRadPerDeg);
   direction = sim::turned_about_z(direction, (scan.rz_deg + shaft_deg) * kRadPerDeg);
   const Vector3 centre = sim::turned_about_z(1e-3 * Vector3{scan.tx_mm, scan.ty_mm, scan.tz_mm},
                                              shaft_deg * kRadPerDeg);

@@ -50,6 +50,16 @@ RigFile rig_of(const RecordingFacts& facts, const std::string& path, const std::
   return rig;
 }
 
+void play(Recording recording, Assembler& assembler) {
+  while (true) {
+    auto event = recording.next();
+    if (!event) throw ExitError(kExitBadData, event.reason());
+    if (!event->has_value()) break;
+    std::visit([&](const auto& message) { assembler.add(message); }, (*event)->message);
+  }
+  assembler.finish();
+}
+
 void run_offline(Recording recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
                  const std::function<void(ProcessedSweep&&)>& on_sweep) {
@@ -70,13 +80,7 @@ void run_offline(Recording recording, const RigFile& rig,
     processed.attitude = corrector.correct(processed.sweep, processed.cloud);
     on_sweep(std::move(processed));
   });
-  while (true) {
-    auto event = recording.next();
-    if (!event) throw ExitError(kExitBadData, event.reason());
-    if (!event->has_value()) break;
-    std::visit([&](const auto& message) { assembler.add(message); }, (*event)->message);
-  }
-  assembler.finish();
+  play(std::move(recording), assembler);
 }
 
 }  // namespace swivel
