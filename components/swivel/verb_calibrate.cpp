@@ -104,7 +104,7 @@ void add_calibrate_mounting(CLI::App& calibrate, StopSignal& stop, Verb& chosen)
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
     recorded->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
-    chosen = [=, &stop] {
+    chosen = [=, &stop]() -> int {
       if (recorded->recording.empty()) {
         return calibrate_live(
             *common, calibration_request(msg::CALIBRATION_OF_MOUNTING, live->mode, live->count),
