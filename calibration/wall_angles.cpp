@@ -12,7 +12,6 @@ namespace {
 constexpr double kMisfitSigmas = 5.0;  // of one wall in one sweep: it was something else
 constexpr double kLeastMisfitRad = rad_from_deg(0.05);
 constexpr double kLeastSigmaRad = 1e-6;   // what claims less still has rounding
-constexpr double kOneInAThousand = 3.09;  // in sigmas, one side
 
 // What a sweep's walls are off together: its beta's error.
 struct Common {
@@ -181,17 +180,6 @@ std::string why_sweeps_disagree(const Views& views, const WallAngles& angles,
                       " times its sigma; see that rig and room stand still, then repeat");
   }
   return reason;
-}
-
-double ChiSquare::widening() const {
-  return freedom > 0.0 ? std::max(1.0, std::sqrt(sum / freedom)) : 1.0;
-}
-
-// Wilson and Hilferty's: the cube root is nearly normal.
-bool ChiSquare::by_chance() const {
-  if (freedom <= 0.0) return true;
-  const double variance = 2.0 / (9.0 * freedom);
-  return std::cbrt(sum / freedom) <= 1.0 - variance + kOneInAThousand * std::sqrt(variance);
 }
 
 ChiSquare scatter_of_sweeps(const Views& views, const WallAngles& angles) {

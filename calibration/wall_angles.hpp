@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/alpha.hpp"
+#include "calibration/chi_square.hpp"
 #include "calibration/room_walls.hpp"
 
 namespace swivel {
@@ -45,16 +46,6 @@ WallAngles fit_wall_angles(const RoomWalls& room, Views& views, std::vector<std:
 
 std::string why_sweeps_disagree(const Views& views, const WallAngles& angles,
                                 const AlphaOptions& options);
-
-struct ChiSquare {
-  double sum = 0.0;
-  double freedom = 0.0;
-
-  // Sigmas are widened by as much as the scatter is more than they foretell.
-  double widening() const;
-
-  bool by_chance() const;
-};
 
 // Eq. (11): of the sweeps about the fit, by their betas.
 ChiSquare scatter_of_sweeps(const Views& views, const WallAngles& angles);

@@ -9,15 +9,11 @@
 #include "calibration/alpha.hpp"
 #include "calibration/attitude.hpp"
 #include "calibration/plate_learning.hpp"
+#include "components/alpha_calibrator/calibration_outcome.hpp"
 #include "components/common/rig_file.hpp"
 #include "swivel/idl/swivel.h"
 
 namespace swivel {
-
-struct LidarName {
-  std::string serial_number;
-  std::string firmware;
-};
 
 struct AlphaWishes {
   double room_yaw_deg = 0.0;
@@ -34,20 +30,14 @@ class AlphaCalibration {
   AlphaCalibration(const RigFile& rig, const AlphaWishes& wishes);
 
   // cloud: the sweep's raw cloud, in frame O'. name: as the user knows the sweep, or empty for its
-  // id. Says in words why the sweep is left out, or what it brought.
-  struct Added {
-    bool used;
-    std::string words;
-  };
+  // id.
+  using Added = CalibrationAdded;
   Added add(const msg::Attitude& attitude, const OrganisedCloud& cloud,
             const std::string& name = "");
 
   std::size_t sweeps_used() const { return sweeps_.size(); }
 
-  struct Outcome {
-    std::optional<msg::Calibration> calibration;
-    std::string words;  // of the result, or why it was refused
-  };
+  using Outcome = CalibrationOutcome;
   Outcome fit(const LidarName& lidar, std::int64_t time_ns) const;
 
  private:

@@ -57,7 +57,7 @@ msg::Attitude blank_attitude(const msg::Sweep& sweep) {
 
 }  // namespace
 
-Corrector::Corrector(const RigFile& rig) : rig_(rig) {
+Corrector::Corrector(const RigFile& rig) : drawn_(rig), rig_(rig), calibration_(rig.rig) {
   if (rig.axis_measured) return;
   if (!rig.plate) {
     throw ConfigurationError(rig.path +
@@ -69,21 +69,34 @@ Corrector::Corrector(const RigFile& rig) : rig_(rig) {
     throw ConfigurationError(rig.path + ": there is no estimator '" + rig.estimator +
                              "'; there are: plate_outline, ring_mean");
   }
-  alpha_deg_ = deg_from_rad(rig.plate->alpha_rad);
 }
 
 std::string Corrector::set_calibration(const msg::Calibration& calibration) {
-  const double sigma_deg = ::swivel::alpha_sigma_deg(calibration);
-  if (!std::isfinite(calibration.alpha_deg()) || !std::isfinite(sigma_deg)) {
-    return "its alpha or the variance of it is not a number; calibrate again";
-  }
-  alpha_deg_ = calibration.alpha_deg();
-  alpha_sigma_deg_ = sigma_deg;
-  calibrated_ = true;
-  const auto shape = plate_shape_of(calibration);
-  if (shape && rig_.plate) rig_.plate->shape = *shape;
-  watch_.calibrated(shape, m_from_mm(calibration.plate_residual_mm()));
-  return {};
+  const std::string wrong = calibration_.take(calibration);
+  if (wrong.empty()) use_calibration();
+  return wrong;
+}
+
+std::string Corrector::name_lidar(const std::string& serial_number) {
+  const bool used = calibration_.now().has_value();
+  const std::string wrong = calibration_.name_lidar(serial_number);
+  if (used == calibration_.now().has_value()) return {};
+  use_calibration();
+  return wrong;
+}
+
+void Corrector::use_calibration() {
+  const auto& calibration = calibration_.now();
+  rig_ = drawn_;
+  if (calibration) rig_.geometry = calibrated_geometry(drawn_.geometry, *calibration);
+  if (!rig_.plate || !estimator_) return;
+  estimator_ = attitude_estimator(rig_.estimator, rig_.geometry);
+  calibrated_ = calibration && tells_alpha(*calibration);
+  alpha_sigma_deg_ = calibrated_ ? ::swivel::alpha_sigma_deg(*calibration) : 0.0;
+  const auto shape = calibrated_ ? plate_shape_of(*calibration) : std::nullopt;
+  if (calibrated_) rig_.plate->alpha_rad = rad_from_deg(calibration->alpha_deg());
+  if (shape) rig_.plate->shape = *shape;
+  watch_.calibrated(shape, calibrated_ ? m_from_mm(calibration->plate_residual_mm()) : 0.0);
 }
 
 msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud) {
@@ -95,7 +108,7 @@ msg::Attitude Corrector::correct(const msg::Sweep& sweep, OrganisedCloud& cloud)
     return attitude;
   }
   attitude.estimator(rig_.estimator);
-  attitude.alpha_deg(alpha_deg_);
+  attitude.alpha_deg(deg_from_rad(rig_.plate->alpha_rad));
   attitude.calibrated(calibrated_);
   const AttitudeEstimate estimate = (*estimator_)(cloud, *rig_.plate);
   const SeamEstimate seam = measure_seam(AlongAxis(cloud, rig_.geometry).cloud());
@@ -137,8 +150,7 @@ void Corrector::fill(const AttitudeEstimate& estimate, msg::Attitude& attitude) 
   if (estimate.verdict != AttitudeVerdict::kGood) return;
   attitude.beta_deg(deg_from_rad(estimate.beta_rad));
   attitude.beta_sigma_deg(deg_from_rad(estimate.beta_sigma_rad));
-  attitude.phi_offset_deg(
-      deg_from_rad(phi_offset_rad(rad_from_deg(alpha_deg_), estimate.beta_rad)));
+  attitude.phi_offset_deg(deg_from_rad(phi_offset_rad(rig_.plate->alpha_rad, estimate.beta_rad)));
   attitude.phi_offset_sigma_deg(std::hypot(attitude.beta_sigma_deg(), alpha_sigma_deg_));
 }
 

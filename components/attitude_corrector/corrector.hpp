@@ -6,6 +6,7 @@
 
 #include "calibration/attitude.hpp"
 #include "components/attitude_corrector/calibration_watch.hpp"
+#include "components/common/calibration_use.hpp"
 #include "components/common/rig_file.hpp"
 #include "swivel/idl/swivel.h"
 
@@ -17,8 +18,10 @@ class Corrector {
   // commanded axis and no plate.
   explicit Corrector(const RigFile& rig);
 
-  // From the next sweep on. Says why it is not taken, or nothing.
+  // From the next sweep on. Both say why the calibration is refused, or nothing; without one alpha
+  // and mounting are as drawn.
   std::string set_calibration(const msg::Calibration& calibration);
+  std::string name_lidar(const std::string& serial_number);
 
   // Estimates the attitude and, if it is good, turns the cloud into the base. A cloud whose
   // attitude is not good is left as it came.
@@ -30,12 +33,14 @@ class Corrector {
   }
 
  private:
+  void use_calibration();
   void judge_turn(const msg::Sweep& sweep, const SeamEstimate& seam, msg::Attitude& attitude) const;
   void fill(const AttitudeEstimate& estimate, msg::Attitude& attitude) const;
 
-  RigFile rig_;
+  RigFile drawn_;
+  RigFile rig_;  // as calibrated
+  CalibrationInUse calibration_;
   std::optional<AttitudeEstimator> estimator_;  // none where the axis is measured
-  double alpha_deg_ = 0.0;
   double alpha_sigma_deg_ = 0.0;
   bool calibrated_ = false;
   CalibrationWatch watch_;

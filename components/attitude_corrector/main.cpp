@@ -27,6 +27,12 @@ class CorrectionStage {
                  calibration.provenance());
   }
 
+  void take(const msg::Health& health) {
+    const auto serial_number = lidar_serial_number(health);
+    const std::string wrong = serial_number ? corrector_.name_lidar(*serial_number) : "";
+    if (!wrong.empty()) health_.error("a calibration was refused: " + wrong);
+  }
+
   void take(const msg::Sweep& sweep) {
     if (sweep.phase() == msg::PHASE_ASSEMBLED && pair_.add(sweep)) correct();
   }
@@ -90,6 +96,7 @@ void correct(const CommonOptions& options, StopSignal& stop) {
 
   participant.subscribe<msg::Calibration>(
       kCalibrationTopic, [&](const auto& calibration) { stage.set_calibration(calibration); });
+  participant.subscribe<msg::Health>(kHealthTopic, [&](const auto& news) { stage.take(news); });
   participant.subscribe<msg::Sweep>(kSweepTopic, [&](const auto& sweep) { stage.take(sweep); });
   participant.subscribe<PointCloud2>(kRawCloudTopic, [&](const auto& cloud) { stage.take(cloud); });
   participant.on_tick(std::chrono::seconds(1), [&] { stage.report(); });

@@ -163,7 +163,7 @@ void Assembler::abandon(const msg::Sweep& ended, const std::string& why) {
   // Later lines may be those of the next sweep.
   last_closed_.window_end_ns(std::min(summary.window_end_ns(), ended.time_ns()));
   ++counters_.sweeps_incomplete;
-  on_sweep_({std::move(summary), {}});
+  on_sweep_({std::move(summary), {}, {}});
 }
 
 bool Assembler::lacks_angles() const {
@@ -211,9 +211,10 @@ void Assembler::close(const std::string& reason) {
   ++(summary.complete() ? counters_.sweeps_complete : counters_.sweeps_incomplete);
   counters_.lines_missing += summary.lines_missing();
   OrganisedCloud cloud = sweep_->take_cloud();
+  SweepReadings readings = sweep_->take_readings();
   sweep_.reset();
   last_closed_ = summary;
-  on_sweep_({std::move(summary), std::move(cloud)});
+  on_sweep_({std::move(summary), std::move(cloud), std::move(readings)});
 }
 
 void Assembler::check(steady_clock::time_point now) {

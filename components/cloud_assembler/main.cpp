@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "components/cloud_assembler/assembler.hpp"
+#include "components/common/calibration_use.hpp"
 #include "components/common/cloud_message.hpp"
 #include "components/common/health_reporter.hpp"
 #include "components/common/program.hpp"
@@ -46,6 +47,38 @@ class SweepPublisher {
   PointCloud2 message_;  // kept: a cloud's 11 MB are allocated once
 };
 
+// The mounting that the next sweep is assembled with.
+class Mounting {
+ public:
+  Mounting(const RigFile& rig, Assembler& assembler, HealthReporter& health)
+      : drawn_(rig.geometry), assembler_(assembler), health_(health), calibration_(rig.rig) {}
+
+  void take(const msg::Calibration& calibration) { apply(calibration_.take(calibration)); }
+
+  void take(const msg::Health& health) {
+    if (const auto serial_number = lidar_serial_number(health)) {
+      const bool used = calibration_.now().has_value();
+      const std::string wrong = calibration_.name_lidar(*serial_number);
+      if (used != calibration_.now().has_value()) apply(wrong);
+    }
+  }
+
+ private:
+  void apply(const std::string& wrong) {
+    if (!wrong.empty()) health_.error("a calibration was refused: " + wrong);
+    const auto& calibration = calibration_.now();
+    const bool told = calibration && tells_mounting(*calibration);
+    assembler_.set_geometry(told ? calibrated_geometry(drawn_, *calibration) : drawn_);
+    health_.set_fact("mounting", told ? "calibrated" : "as drawn");
+    spdlog::info("mounting {}", told ? "from " + calibration->provenance() : "as drawn");
+  }
+
+  RigGeometry drawn_;
+  Assembler& assembler_;
+  HealthReporter& health_;
+  CalibrationInUse calibration_;
+};
+
 void report(const Assembler& assembler, const SweepPublisher& publisher, HealthReporter& health) {
   const AssemblerCounters& counters = assembler.counters();
   health.set_counter("lines_received", counters.lines_received);
@@ -72,6 +105,11 @@ void assemble(const CommonOptions& options, StopSignal& stop) {
   Assembler assembler(assembly_options(rig),
                       [&](AssembledSweep&& assembled) { publisher.publish(std::move(assembled)); });
 
+  Mounting mounting(rig, assembler, health);
+
+  participant.subscribe<msg::Calibration>(kCalibrationTopic,
+                                          [&](const auto& news) { mounting.take(news); });
+  participant.subscribe<msg::Health>(kHealthTopic, [&](const auto& news) { mounting.take(news); });
   participant.subscribe<msg::ScanLine>(kScanLineTopic,
                                        [&](const auto& line) { assembler.add(line); });
   participant.subscribe<msg::Axis>(kAxisTopic, [&](const auto& axis) { assembler.add(axis); });

@@ -1,7 +1,9 @@
 #include "components/cloud_assembler/sweep_in_progress.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace swivel {
 namespace {
@@ -65,6 +67,7 @@ SweepInProgress::Fate SweepInProgress::place(const msg::ScanLine& line, const Ax
   const std::size_t end_row = windows_.front().first_row + windows_.front().rows;
   const bool inside = *row < end_row;
   if (inside) write_row(*row, line, axis);
+  if (inside && options_.keep_readings) keep_line(line, axis);
   previous_row_ = *row;
   previous_time_ns_ = line.beam0_time_ns();
   previous_in_window_ = true;
@@ -88,6 +91,8 @@ bool SweepInProgress::begin(const msg::ScanLine& line, const AxisTrack& axis) {
                                   rad_from_deg(line.beam_step_deg()), line.ranges_mm().size()));
   cloud_ = OrganisedCloud(lines_expected_, line.ranges_mm().size());
   first_line_ = line;
+  readings_.first_beam_angle_rad = rad_from_deg(line.first_beam_angle_deg());
+  readings_.beam_step_rad = rad_from_deg(line.beam_step_deg());
   if (options_.axis_measured) return true;
   const bool first_row = windows_.front().first_row == 0;
   const std::int64_t origin_ns = first_row ? line.beam0_time_ns() : announced_.window_start_ns();
@@ -116,6 +121,25 @@ void SweepInProgress::write_row(std::size_t row, const msg::ScanLine& line, cons
     assembler_->assemble(readings, angles_rad, cloud_.line(row));
   }
   ++lines_used_;
+}
+
+void SweepInProgress::keep_line(const msg::ScanLine& line, const AxisTrack& axis) {
+  const auto first_rad = axis.angle_at(line.beam0_time_ns());
+  const auto last_rad = axis.angle_at(last_beam_time_ns(line));
+  if (!first_rad || !last_rad) return;
+  const std::size_t beams = line.ranges_mm().size();
+  LineOfReadings kept;
+  kept.axis_angle_rad = *first_rad - first_angle_rad_;
+  kept.angle_per_beam_rad =
+      (*last_rad - *first_rad) / static_cast<double>(std::max<std::size_t>(1, beams - 1));
+  kept.turning_down = *last_rad < *first_rad;
+  kept.ranges_m.reserve(beams);
+  for (const std::uint16_t range_mm : line.ranges_mm()) {
+    const bool valid = range_mm >= line.range_min_mm() && range_mm <= line.range_max_mm();
+    kept.ranges_m.push_back(valid ? static_cast<float>(m_from_mm(range_mm))
+                                  : std::numeric_limits<float>::quiet_NaN());
+  }
+  readings_.lines.push_back(std::move(kept));
 }
 
 msg::Sweep SweepInProgress::summary(const std::string& reason) const {

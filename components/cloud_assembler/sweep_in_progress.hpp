@@ -8,6 +8,7 @@
 #include "calibration/axis_track.hpp"
 #include "calibration/line_assembly.hpp"
 #include "calibration/organised_cloud.hpp"
+#include "calibration/sweep_readings.hpp"
 #include "components/common/rig_file.hpp"
 #include "swivel/idl/swivel.h"
 
@@ -21,6 +22,7 @@ struct AssemblyOptions {
   bool axis_measured = false;
   Timing timing = Timing::kPerBeam;
   double sweep_angle_rad = kPi;  // for Timing::kEq7
+  bool keep_readings = false;    // for a calibration: what the cloud was made of, too
 };
 
 class SweepInProgress {
@@ -51,6 +53,7 @@ class SweepInProgress {
   const OrganisedCloud& cloud() const { return cloud_; }  // empty before the first line
   std::size_t last_row() const { return previous_row_; }  // of the line placed last
   OrganisedCloud take_cloud() { return std::move(cloud_); }
+  SweepReadings take_readings() { return std::move(readings_); }
 
  private:
   struct Window {
@@ -65,6 +68,7 @@ class SweepInProgress {
   std::optional<std::size_t> row_of(const msg::ScanLine& line) const;
   bool begin(const msg::ScanLine& line, const AxisTrack& axis);
   void write_row(std::size_t row, const msg::ScanLine& line, const AxisTrack& axis);
+  void keep_line(const msg::ScanLine& line, const AxisTrack& axis);
 
   AssemblyOptions options_;
   msg::Sweep announced_;
@@ -80,6 +84,7 @@ class SweepInProgress {
   std::size_t previous_row_ = 0;
   std::size_t lines_used_ = 0;
   OrganisedCloud cloud_;
+  SweepReadings readings_;
 };
 
 }  // namespace swivel

@@ -133,7 +133,11 @@ msg::Calibration load_calibration(const std::string& path) {
   const auto covariance =
       file.numbers("covariance", kCalibrationSize * kCalibrationSize, kAnyCovariance);
   std::copy(covariance.begin(), covariance.end(), calibration.covariance().begin());
-  if (covariance[0] < 0.0) file.refuse("covariance", "has a negative variance of alpha");
+  for (std::size_t index = 0; index < kCalibrationSize; ++index) {
+    if (covariance[index * kCalibrationSize + index] < 0.0) {
+      file.refuse("covariance", "has a negative variance");
+    }
+  }
   file.finish();
   return calibration;
 }

@@ -47,10 +47,17 @@ std::string shared_file(const std::string& name) {
   return (std::filesystem::path(program_directory()) / "../share/swivel" / name).lexically_normal();
 }
 
+std::string rig_file_of(const std::string& path_or_name) {
+  const bool name = path_or_name.find_first_of("./") == std::string::npos;
+  return name ? shared_file("rigs/" + path_or_name + ".yaml") : path_or_name;
+}
+
 void add_common_options(CLI::App& app, CommonOptions& options) {
   options.rig_file = shared_file("rigs/yuan.yaml");
   options.profiles_file = shared_file("dds_profiles.xml");
-  app.add_option("--rig", options.rig_file, "The rig file")->capture_default_str();
+  app.add_option("--rig", options.rig_file, "The rig file, or the name of a shipped one")
+      ->transform(rig_file_of, "", "rig")
+      ->capture_default_str();
   app.add_option("--domain", options.domain, "The DDS domain")
       ->envname("SWIVEL_DOMAIN")
       ->check(CLI::Range(0, 232))

@@ -69,6 +69,9 @@ struct CommonOptions {
 std::string shared_file(const std::string& name);
 std::string program_directory();
 
+// The file of a shipped rig, where its name alone is given; else the path as it is.
+std::string rig_file_of(const std::string& path_or_name);
+
 void add_common_options(CLI::App& app, CommonOptions& options);
 void start_log(const std::string& program, const std::string& level);
 

@@ -1,6 +1,7 @@
 #include "components/common/rig_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "components/common/strict_yaml.hpp"
 
@@ -45,17 +46,10 @@ StepperSection read_stepper(YamlSection section) {
   return stepper;
 }
 
-// Turns about the fixed X, then Y, then Z axis.
 Eigen::Isometry3d read_transform(YamlSection& section) {
   const auto xyz_mm = section.numbers("xyz_mm", 3, kLength);
   const auto rpy_deg = section.numbers("rpy_deg", 3, kAngle);
-  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
-  transform.translate(
-      Eigen::Vector3d(m_from_mm(xyz_mm[0]), m_from_mm(xyz_mm[1]), m_from_mm(xyz_mm[2])));
-  transform.rotate(Eigen::AngleAxisd(rad_from_deg(rpy_deg[2]), Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(rad_from_deg(rpy_deg[1]), Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(rad_from_deg(rpy_deg[0]), Eigen::Vector3d::UnitX()));
-  return transform;
+  return transform_of({xyz_mm[0], xyz_mm[1], xyz_mm[2]}, {rpy_deg[0], rpy_deg[1], rpy_deg[2]});
 }
 
 void read_axis(YamlSection section, RigFile& rig) {
@@ -89,6 +83,7 @@ PlateGeometry read_plate(YamlSection section) {
 
 ModesSection read_modes(YamlSection section) {
   ModesSection modes;
+  modes.line_period_s = 1e-3 * section.number("line_period_ms", {5.0, 1000.0}, 25.0);
   modes.sweep_angle_deg = section.number("sweep_angle_deg", {1.0, 360.0});
   YamlSection lines = section.section("lines");
   for (const std::string& key : lines.keys()) {
@@ -105,6 +100,24 @@ ModesSection read_modes(YamlSection section) {
 }
 
 }  // namespace
+
+Eigen::Isometry3d transform_of(const std::array<double, 3>& xyz_mm,
+                               const std::array<double, 3>& rpy_deg) {
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.translate(
+      Eigen::Vector3d(m_from_mm(xyz_mm[0]), m_from_mm(xyz_mm[1]), m_from_mm(xyz_mm[2])));
+  transform.rotate(Eigen::AngleAxisd(rad_from_deg(rpy_deg[2]), Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(rad_from_deg(rpy_deg[1]), Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(rad_from_deg(rpy_deg[0]), Eigen::Vector3d::UnitX()));
+  return transform;
+}
+
+Eigen::Vector3d rpy_deg_of(const Eigen::Matrix3d& rotation) {
+  const double level = std::hypot(rotation(0, 0), rotation(1, 0));
+  return {deg_from_rad(std::atan2(rotation(2, 1), rotation(2, 2))),
+          deg_from_rad(std::atan2(-rotation(2, 0), level)),
+          deg_from_rad(std::atan2(rotation(1, 0), rotation(0, 0)))};
+}
 
 RigFile load_rig_file(const std::string& path) {
   YamlSection file = YamlSection::load(path);

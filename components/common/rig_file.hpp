@@ -1,6 +1,7 @@
 // A rig file (config/rigs/*.yaml), read and checked: everything that differs from rig to rig.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -26,6 +27,7 @@ struct StepperSection {
 };
 
 struct ModesSection {
+  double line_period_s = 0.025;  // nominal, of the lidar
   double sweep_angle_deg = 180.0;
   std::map<int, int> lines;  // mode -> scan lines of a sweep
 };
@@ -47,6 +49,11 @@ struct RigFile {
   std::string estimator;
   ModesSection modes;
 };
+
+// Turned about the fixed X, then Y, then Z axis; and back, pitch between -90 and 90 deg.
+Eigen::Isometry3d transform_of(const std::array<double, 3>& xyz_mm,
+                               const std::array<double, 3>& rpy_deg);
+Eigen::Vector3d rpy_deg_of(const Eigen::Matrix3d& rotation);
 
 // Throws ConfigurationError with file and line.
 RigFile load_rig_file(const std::string& path);

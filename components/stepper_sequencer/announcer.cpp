@@ -19,8 +19,8 @@ msg::AxisSample sample_at(std::int64_t time_ns, double angle_deg) {
 
 }  // namespace
 
-Announcer::Announcer(const std::string& rig, SequencerOutputs outputs)
-    : outputs_(std::move(outputs)) {
+Announcer::Announcer(const std::string& rig, bool axis_measured, SequencerOutputs outputs)
+    : outputs_(std::move(outputs)), axis_measured_(axis_measured) {
   now_.rig(rig);
   now_.phase(msg::PHASE_IDLE);
 }
@@ -69,18 +69,39 @@ void Announcer::repeat(const std::string& reason) {
 
 void Announcer::window(const LineWindow& window) {
   const std::lock_guard lock(mutex_);
-  msg::Axis axis;
-  axis.rig(now_.rig());
-  axis.source(msg::AXIS_COMMANDED);
-  axis.samples().push_back(sample_at(window.start_ns, window.start_deg));
-  axis.samples().push_back(sample_at(window.end_ns, window.end_deg));
-  outputs_.axis(axis);
+  if (!axis_measured_) publish_commanded(window);
   now_.phase(msg::PHASE_CRUISING);
   now_.window_start_ns(window.start_ns);
   now_.window_end_ns(window.end_ns);
   now_.window_first_line(window.first_line);
   now_.window_lines(window.lines);
   publish(now_, {});
+}
+
+void Announcer::publish_commanded(const LineWindow& window) {
+  msg::Axis axis;
+  axis.rig(now_.rig());
+  axis.source(msg::AXIS_COMMANDED);
+  axis.samples().push_back(sample_at(window.start_ns, window.start_deg));
+  axis.samples().push_back(sample_at(window.end_ns, window.end_deg));
+  outputs_.axis(axis);
+}
+
+void Announcer::position(const StepperStatus& report) {
+  const std::lock_guard lock(mutex_);
+  if (!axis_measured_) return;
+  const auto sample = measured_.add(report);
+  if (!sample) return;
+  msg::Axis axis;
+  axis.rig(now_.rig());
+  axis.source(msg::AXIS_MEASURED);
+  axis.samples().push_back(*sample);
+  outputs_.axis(axis);
+}
+
+std::uint64_t Announcer::positions_left_out() const {
+  const std::lock_guard lock(mutex_);
+  return measured_.left_out();
 }
 
 void Announcer::refuse(const msg::SweepRequest& request, const std::string& reason) {

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 
+#include "components/stepper_sequencer/measured_axis.hpp"
 #include "components/stepper_sequencer/sweep_plan.hpp"
 #include "swivel/idl/swivel.h"
 
@@ -30,7 +31,8 @@ struct LineWindow {
 
 class Announcer {
  public:
-  Announcer(const std::string& rig, SequencerOutputs outputs);
+  // axis_measured: the angles said are those of position(), not those commanded in a window.
+  Announcer(const std::string& rig, bool axis_measured, SequencerOutputs outputs);
 
   // What is said from now on belongs to this request, and to no sweep yet.
   void begin_request(const msg::SweepRequest& request, const SweepPlan& plan);
@@ -38,8 +40,12 @@ class Announcer {
   // 1970 or, within the same second, the next number.
   void begin_sweep(std::uint16_t sweeps_left);
   void phase(msg::SweepPhase phase, const std::string& reason = {});
-  void window(const LineWindow& window);  // the axis first, then phase CRUISING
+  void window(const LineWindow& window);  // a commanded axis first, then phase CRUISING
   void end_request();                     // no sweep is spoken of any more
+
+  // What the controller said of the axis; published where it is measured.
+  void position(const StepperStatus& report);
+  std::uint64_t positions_left_out() const;
 
   // Answers a request that is not taken. What is under way goes on.
   void refuse(const msg::SweepRequest& request, const std::string& reason);
@@ -48,9 +54,12 @@ class Announcer {
 
  private:
   void publish(msg::Sweep sweep, const std::string& reason);
+  void publish_commanded(const LineWindow& window);
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   SequencerOutputs outputs_;
+  bool axis_measured_;
+  MeasuredAxis measured_;
   msg::Sweep now_;  // as last said, without the reason
   std::uint64_t last_sweep_id_ = 0;
 };

@@ -12,6 +12,8 @@ namespace {
 
 using namespace swivel;
 
+constexpr double kMeasuringInterval_s = 0.02;  // from one measured angle to the next
+
 SequencerOptions sequencer_options(const RigFile& rig, const std::string& address) {
   if (!rig.stepper) throw ConfigurationError(rig.path + ": has no 'stepper' section to turn");
   SequencerOptions options;
@@ -25,8 +27,11 @@ SequencerOptions sequencer_options(const RigFile& rig, const std::string& addres
   for (const auto& [mode, lines] : rig.modes.lines) {
     options.sweep.lines_of_mode[mode] = static_cast<std::uint32_t>(lines);
   }
+  options.sweep.line_period_s = rig.modes.line_period_s;
   options.sweep.settle_s = rig.stepper->settle_s;
   options.sweep.return_speed_deg_s = rig.stepper->return_speed_deg_s;
+  options.sweep.axis_measured = rig.axis_measured;
+  if (rig.axis_measured) options.poll_interval_s = kMeasuringInterval_s;
   return options;
 }
 
@@ -71,6 +76,7 @@ void report(const Sequencer& sequencer, HealthReporter& health) {
   health.set_counter("requests_refused", now.requests_refused);
   health.set_counter("faults", now.faults);
   health.set_counter("garbage_lines", now.garbage_lines);
+  health.set_counter("positions_left_out", now.positions_left_out);
   health.set_state(now.ready ? msg::HEALTH_OK : msg::HEALTH_WAITING, now.doing);
 }
 

@@ -11,7 +11,7 @@ namespace swivel {
 
 Sequencer::Sequencer(SequencerOptions options, SequencerOutputs outputs)
     : options_(std::move(options)),
-      announcer_(options_.rig, std::move(outputs)),
+      announcer_(options_.rig, options_.sweep.axis_measured, std::move(outputs)),
       stepper_(options_.stepper, &interruption_.stop_signal()),
       driver_(stepper_, options_.sweep, options_.poll_interval_s, announcer_, interruption_) {
   health_.doing = "not started";

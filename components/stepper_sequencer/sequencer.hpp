@@ -44,9 +44,10 @@ struct SequencerHealth {
   std::uint64_t sweeps_done = 0;
   std::uint64_t requests_refused = 0;
   std::uint64_t faults = 0;
-  std::uint64_t garbage_lines = 0;  // from the controller
-  std::string firmware;             // its version
-  std::vector<std::string> advice;  // on its settings
+  std::uint64_t garbage_lines = 0;       // from the controller
+  std::uint64_t positions_left_out = 0;  // measured, but of no certain instant
+  std::string firmware;                  // its version
+  std::vector<std::string> advice;       // on its settings
 };
 
 class Sequencer {

@@ -85,7 +85,9 @@ void Sequencer::note_error(const std::string& reason) {
 
 SequencerHealth Sequencer::health() const {
   const std::lock_guard lock(mutex_);
-  return health_;
+  SequencerHealth health = health_;
+  health.positions_left_out = announcer_.positions_left_out();
+  return health;
 }
 
 }  // namespace swivel

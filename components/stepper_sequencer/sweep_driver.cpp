@@ -14,6 +14,9 @@ constexpr std::int64_t kArrivalPollNs = 20'000'000;
 // From the controller's ok to its first step, at most; it is Idle until then.
 constexpr std::int64_t kStartGraceNs = 250'000'000;
 constexpr double kOverdueS = 2.0;
+// A measured shaft stands where the motor took it, and that is not a whole step of its encoder;
+// what is further off has lost steps.
+constexpr double kMeasuredTolerance_deg = 0.5;
 
 std::int64_t after(std::int64_t time_ns, double seconds) {
   return time_ns + std::llround(seconds * 1e9);
@@ -55,6 +58,13 @@ LineWindow window_from(const SweepPlan& plan, std::int64_t start_ns) {
   return window;
 }
 
+// When the shaft is where the window opens, by one measured angle at full speed: however late the
+// motor started.
+std::int64_t opens_ns(const SweepPlan& plan, const StepperStatus& status) {
+  const std::int64_t middle_ns = status.asked_ns + (status.answered_ns - status.asked_ns) / 2;
+  return after(middle_ns, (plan.window_angle_deg - status.angle_deg) / plan.speed_deg_s);
+}
+
 }  // namespace
 
 SweepDriver::SweepDriver(GrblStepper& stepper, const SweepOptions& options, double poll_interval_s,
@@ -91,7 +101,7 @@ Outcome SweepDriver::sweep(const SweepPlan& plan) {
 Outcome SweepDriver::sweep_improved(const SweepPlan& plan) {
   const Result<Turn> turn = stepper_.move_to(plan.end_angle_deg, plan.speed_deg_s);
   if (!turn) return Failure{turn.reason()};
-  const LineWindow window = window_from(plan, after(turn->accepted_ns, plan.window_delay_s));
+  LineWindow window = window_from(plan, after(turn->accepted_ns, plan.window_delay_s));
   Outcome steady = confirm_window(plan, *turn, window);
   if (!steady) return steady;
   announcer_.window(window);
@@ -101,13 +111,15 @@ Outcome SweepDriver::sweep_improved(const SweepPlan& plan) {
   return arrive(*turn, plan.speed_deg_s);
 }
 
-Outcome SweepDriver::confirm_window(const SweepPlan& plan, const Turn& turn,
-                                    const LineWindow& window) {
+Outcome SweepDriver::confirm_window(const SweepPlan& plan, const Turn& turn, LineWindow& window) {
   const std::int64_t interval_ns = std::clamp<std::int64_t>(after(0, options_.settle_s / 4.0),
                                                             kArrivalPollNs, poll_interval_ns_);
   for (;;) {
     const Result<StepperStatus> status = look();
     if (!status) return Failure{status.reason()};
+    if (options_.axis_measured && is_steady(plan, *status)) {
+      window = window_from(plan, opens_ns(plan, *status));
+    }
     if (proves(plan, *status, window)) return Done{};
     const bool should_turn = status->asked_ns > turn.accepted_ns + kStartGraceNs;
     if (should_turn && status->state != GrblState::kJog)
@@ -189,7 +201,9 @@ Outcome SweepDriver::arrive(const Turn& turn, double speed_deg_s) {
 }
 
 bool SweepDriver::is_there(const StepperStatus& status, double angle_deg) const {
-  const double tolerance_deg = 0.5 / stepper_.settings().steps_per_deg + 0.002;  // of the report
+  const double step_deg = 1.0 / stepper_.settings().steps_per_deg;
+  const double tolerance_deg =
+      options_.axis_measured ? kMeasuredTolerance_deg : 0.5 * step_deg + 0.002;  // of the report
   return std::abs(status.angle_deg - angle_deg) <= tolerance_deg;
 }
 
@@ -201,6 +215,7 @@ Result<StepperStatus> SweepDriver::look() {
   if (!std::isfinite(status->angle_deg))
     return Failure{"the controller's reports hold no position; send $10=1"};
   angle_deg_ = status->angle_deg;
+  announcer_.position(*status);
   return status;
 }
 

@@ -31,6 +31,7 @@ struct SweepOptions {
   double settle_s = 0.15;                // of constant speed before the first line, after the last
   double stand_s = 0.1;                  // stop_and_go: from standing still to the line
   double return_speed_deg_s = 90.0;      // also of stop_and_go's steps
+  bool axis_measured = false;            // the controller's positions are measured, not counted
 };
 
 struct SweepPlan {

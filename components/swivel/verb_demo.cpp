@@ -4,12 +4,16 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
+#include "components/common/calibration_file.hpp"
 #include "components/swivel/live/calibrate_live.hpp"
+#include "components/swivel/live/live_axis.hpp"
 #include "components/swivel/live/participants.hpp"
 #include "components/swivel/live/roll.hpp"
 #include "components/swivel/live/scan.hpp"
@@ -25,9 +29,13 @@ constexpr int kDemoDomain = 73;  // so that a demo does not meet a scanner at wo
 // A worse home switch than the bench's own: the skew is to be seen with the naked eye.
 constexpr const char* kHomeSigma_deg = "4";
 
+// A lidar that was not put on as drawn, on a rig that measures its axis.
+constexpr std::array<const char*, 6> kMountingOff{
+    "--bias-deg", "3", "--mounting-rpy-deg", "0,0.4,0", "--mounting-xyz-mm", "2,-3,0"};
+
 struct DemoOptions {
   std::string folder = "demo";
-  std::vector<int> modes{1, 4};
+  std::vector<int> modes;  // empty: 1, and 4 where the rig has it
   int calibration_mode = 3;
   int calibration_sweeps = 3;
   std::uint64_t seed = 3;
@@ -98,8 +106,7 @@ double attitude_error_deg(const msg::Attitude& attitude, double true_phi_deg) {
   return std::remainder(attitude.phi_offset_deg() - true_phi_deg, 360.0);
 }
 
-nlohmann::ordered_json against_truth(const ProcessedSweep& sweep, const std::string& truth_path) {
-  const TruthFile truth(truth_path);
+nlohmann::ordered_json attitude_against_truth(const ProcessedSweep& sweep, const TruthFile& truth) {
   const auto phi_deg = truth.phi_deg(sweep.sweep.first_device_stamp_ms());
   if (!phi_deg) throw ExitError(kExitInternal, "the bench's truth knows nothing of this sweep");
   const double error_deg = attitude_error_deg(sweep.attitude, *phi_deg);
@@ -109,16 +116,80 @@ nlohmann::ordered_json against_truth(const ProcessedSweep& sweep, const std::str
   return {{"true_phi_deg", *phi_deg}, {"attitude_error_deg", error_deg}};
 }
 
+nlohmann::ordered_json axis_against_truth(const ProcessedSweep& sweep, const LiveAxis& axis,
+                                          const TruthFile& truth) {
+  double sum_deg = 0.0;
+  double squares = 0.0;
+  int lines = 0;
+  for (const TruthFile::Line& line : truth.lines()) {
+    const bool within = line.beam0_time_ns >= sweep.sweep.window_start_ns() &&
+                        line.beam0_time_ns <= sweep.sweep.window_end_ns();
+    const auto angle_deg = within ? axis.angle_deg(line.beam0_time_ns) : std::nullopt;
+    if (!angle_deg) continue;
+    const double error_deg = *angle_deg - line.phi_deg;
+    sum_deg += error_deg;
+    squares += error_deg * error_deg;
+    ++lines;
+  }
+  if (lines == 0) throw ExitError(kExitInternal, "the bench's truth knows nothing of this sweep");
+  const double mean_deg = sum_deg / lines;
+  const double rms_deg = std::sqrt(squares / lines);
+  std::cout << fmt::format("         axis error against the truth {:+.3f} deg, {:.3f} rms",
+                           mean_deg, rms_deg)
+            << std::endl;
+  return {{"axis_error_mean_deg", mean_deg}, {"axis_error_rms_deg", rms_deg}};
+}
+
+// The quickest mode, and a fine one where the rig has it.
+std::vector<int> modes_of(const DemoOptions& options, const RigFile& rig) {
+  std::vector<int> modes = options.modes;
+  for (const int mode : {1, 4}) {
+    if (options.modes.empty() && rig.modes.lines.count(mode) != 0) modes.push_back(mode);
+  }
+  for (const int mode : modes) check_mode(rig, mode);
+  return modes;
+}
+
+std::vector<std::string> bench_arguments(const RigFile& rig, const DemoOptions& options,
+                                         const std::string& truth_path) {
+  std::vector<std::string> arguments{
+      "--rig",  std::filesystem::path(rig.path).stem(), "--truth",     truth_path,
+      "--seed", std::to_string(options.seed),           "--log-level", "warning"};
+  if (rig.axis_measured) {
+    arguments.insert(arguments.end(), kMountingOff.begin(), kMountingOff.end());
+  } else {
+    arguments.insert(arguments.end(), {"--home-sigma-deg", kHomeSigma_deg});
+  }
+  return arguments;
+}
+
+void calibrate_alpha(LiveCalibration& calibration, const DemoOptions& options, StopSignal& stop) {
+  std::cout << "alpha is calibrated from the walls ..." << std::endl;
+  calibration.run(calibration_request(msg::CALIBRATION_OF_ALPHA, options.calibration_mode,
+                                      options.calibration_sweeps),
+                  stop);
+}
+
+// What was found against what the bench was built with.
+void calibrate_mounting(LiveCalibration& calibration, const std::string& folder,
+                        OutputFolder& output, StopSignal& stop) {
+  std::cout << "the mounting is calibrated from the room ..." << std::endl;
+  calibration.run(calibration_request(msg::CALIBRATION_OF_MOUNTING, 1, 1), stop);
+  const msg::Calibration found = load_calibration(folder + "/calibration.yaml");
+  const TruthFile truth(folder + "/truth.csv");
+  const double true_bias_deg = truth.number("bias_deg").value_or(NAN);
+  std::cout << fmt::format("         truth: bias {:.4f} deg", true_bias_deg) << std::endl;
+  output.note("bias_deg", found.bias_deg());
+  output.note("true_bias_deg", true_bias_deg);
+}
+
 int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal& stop) {
   start_log("swivel", "warning");
   const RigFile rig = load_rig_file(common.rig_file);
-  for (const int mode : options.modes) check_mode(rig, mode);
+  const std::vector<int> modes = modes_of(options, rig);
   OutputFolder output(options.folder, "simulated bench", rig, {});
   const std::string truth_path = options.folder + "/truth.csv";
-  ChildProcess bench("swivel-bench",
-                     {"--truth", truth_path, "--seed", std::to_string(options.seed),
-                      "--home-sigma-deg", kHomeSigma_deg, "--log-level", "warning"},
-                     true);
+  ChildProcess bench("swivel-bench", bench_arguments(rig, options, truth_path), true);
   const BenchAddresses addresses = await_bench(bench);
   DemoRecorder recorder(common, options.recording);
   CommonOptions quiet = common;
@@ -130,25 +201,32 @@ int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal
   const Roll roll(participant);
   LiveSweeps sweeps(participant);
   LiveCalibration calibration(participant);
+  const LiveAxis axis(participant);
   participant.start();
   std::cout << "five participants start, the stepper homes ..." << std::endl;
   const std::string missing = roll.await(participants_of("all"), std::chrono::seconds(30));
   if (!missing.empty()) throw ExitError(kExitUnavailable, missing);
 
   recorder.check();
-  std::cout << "alpha is calibrated from the walls ..." << std::endl;
-  calibration.run(options.calibration_mode, options.calibration_sweeps, 0.0, stop);
+  if (rig.plate) calibrate_alpha(calibration, options, stop);
+  if (rig.axis_measured) calibrate_mounting(calibration, options.folder, output, stop);
   int good = 0;
-  for (const int mode : options.modes) {
+  for (const int mode : modes) {
     std::cout << "scan in mode " << mode << " ..." << std::endl;
     good += scan(sweeps, {mode, 1, msg::SEQUENCE_IMPROVED}, output, stop,
-                 [&](const ProcessedSweep& sweep) { return against_truth(sweep, truth_path); });
+                 [&](const ProcessedSweep& sweep) {
+                   const TruthFile truth(truth_path);
+                   return rig.axis_measured ? axis_against_truth(sweep, axis, truth)
+                                            : attitude_against_truth(sweep, truth);
+                 });
   }
-  output.note("true_alpha_deg", TruthFile(truth_path).number("alpha_deg").value_or(NAN));
+  if (rig.plate) {
+    output.note("true_alpha_deg", TruthFile(truth_path).number("alpha_deg").value_or(NAN));
+  }
   output.finish();
   recorder.finish();
   std::cout << "see " << options.folder << "/top_view.png, cloud.ply, report.json" << std::endl;
-  return good == static_cast<int>(options.modes.size()) ? kExitOk : kExitBadData;
+  return good == static_cast<int>(modes.size()) ? kExitOk : kExitBadData;
 }
 
 }  // namespace
@@ -160,9 +238,8 @@ void add_demo(CLI::App& app, StopSignal& stop, Verb& chosen) {
   const auto options = std::make_shared<DemoOptions>();
   common->domain = kDemoDomain;
   verb->add_option("-o,--output", options->folder, "The folder to write to")->capture_default_str();
-  verb->add_option("--modes", options->modes, "A sweep of each")
-      ->delimiter(',')
-      ->capture_default_str();
+  verb->add_option("--modes", options->modes, "A sweep of each [1, and 4 where the rig has it]")
+      ->delimiter(',');
   verb->add_option("--calibration-mode", options->calibration_mode, "Of the sweeps for alpha")
       ->capture_default_str();
   verb->add_option("--calibration-sweeps", options->calibration_sweeps, "How many of them")

@@ -36,6 +36,18 @@ void in_section(YamlSection& file, const std::string& key,
   section->finish();
 }
 
+sim::Vector3 read_triple(YamlSection& section, const char* key, Range range,
+                         const sim::Vector3& when_absent) {
+  if (!section.has(key)) return when_absent;
+  const auto values = section.numbers(key, 3, range);
+  return {values[0], values[1], values[2]};
+}
+
+void read_placement(YamlSection& section, sim::Placement& placement) {
+  placement.xyz_mm = read_triple(section, "xyz_mm", kPlace, placement.xyz_mm);
+  placement.rpy_deg = read_triple(section, "rpy_deg", kAngle, placement.rpy_deg);
+}
+
 sim::Furniture read_furniture(YamlSection& section) {
   sim::Furniture piece;
   read(section, "x_mm", kPlace, piece.x_mm);
@@ -86,11 +98,26 @@ void read_clutter(YamlSection& section, sim::ClutterOptions& clutter) {
   read(section, "size_mm", kSize, clutter.size_mm);
 }
 
+void read_sensor(YamlSection& section, sim::SensorModel& sensor) {
+  const std::string model = section.text("model", sensor.product);
+  const auto known = sim::sensor_model(model);
+  if (!known) section.refuse("model", "is none of UST-10LX, UTM-30LX, URG-04LX");
+  sensor = *known;
+  sensor.serial_number = section.text("serial_number", sensor.serial_number);
+  read(section, "first_step", {0.0, 9998.0}, sensor.first_step);
+  read(section, "last_step", {1.0, 9999.0}, sensor.last_step);
+  read(section, "front_step", {0.0, 9999.0}, sensor.front_step);
+  read(section, "steps_per_turn", {2.0, 100000.0}, sensor.steps_per_turn);
+  if (sensor.last_step >= sensor.steps_per_turn) {
+    section.refuse("last_step", "must be below steps_per_turn: a scan is less than a turn");
+  }
+  if (sensor.first_step >= sensor.last_step) {
+    section.refuse("first_step", "must be below last_step");
+  }
+}
+
 void read_lidar(YamlSection& section, sim::LidarOptions& lidar) {
-  read(section, "last_step", {1.0, 9999.0}, lidar.last_step);
-  read(section, "front_step", {0.0, 9999.0}, lidar.front_step);
-  read(section, "steps_per_turn", {2.0, 100000.0}, lidar.steps_per_turn);
-  read(section, "lever_arm_mm", kPlace, lidar.lever_arm_mm);
+  read_sensor(section, lidar.sensor);
   read(section, "bias_deg", kTilt, lidar.bias_deg);
   read(section, "noise_mm", kNoise, lidar.noise_mm);
   read(section, "range_bias_mm", kPlace, lidar.range_bias_mm);
@@ -103,9 +130,6 @@ void read_lidar(YamlSection& section, sim::LidarOptions& lidar) {
   read(section, "gain_knee_mm", kSize, lidar.gain_knee_mm);
   read(section, "echo_merge_mm", kSize, lidar.echo_merge_mm);
   read(section, "mixed_pixel_rate", kRate, lidar.mixed_pixel_rate);
-  if (lidar.last_step >= lidar.steps_per_turn) {
-    section.refuse("last_step", "must be below steps_per_turn: a scan is less than a turn");
-  }
 }
 
 void read_timing(YamlSection& section, sim::LidarTimingOptions& timing) {
@@ -119,6 +143,16 @@ void read_timing(YamlSection& section, sim::LidarTimingOptions& timing) {
   read(section, "start_latency_ms", kTime, timing.start_latency_ms);
   read(section, "send_delay_ms", kTime, timing.send_delay_ms);
   read(section, "send_jitter_ms", kTime, timing.send_jitter_ms);
+}
+
+void read_encoder(YamlSection& section, sim::EncoderOptions& encoder) {
+  encoder.present = true;
+  read(section, "step_deg", {1e-6, 10.0}, encoder.step_deg);
+  read(section, "latency_min_ms", kTime, encoder.latency_min_ms);
+  read(section, "latency_max_ms", kTime, encoder.latency_max_ms);
+  if (encoder.latency_max_ms < encoder.latency_min_ms) {
+    section.refuse("latency_max_ms", "must not be below latency_min_ms");
+  }
 }
 
 void read_motor(YamlSection& section, sim::MotorOptions& motor) {
@@ -136,6 +170,9 @@ void read_motor(YamlSection& section, sim::MotorOptions& motor) {
   read(section, "boot_s", {0.0, 60.0}, motor.boot_s);
   read(section, "lose_every", kCount, motor.lose_every);
   read(section, "lose_after_s", kTime, motor.lose_after_s);
+  read(section, "travel_deg", {1.0, 1e6}, motor.travel_deg);
+  in_section(section, "encoder",
+             [&](YamlSection& encoder) { read_encoder(encoder, motor.encoder); });
   if (motor.start_latency_max_ms < motor.start_latency_min_ms) {
     section.refuse("start_latency_max_ms", "must not be below start_latency_min_ms");
   }
@@ -164,6 +201,8 @@ sim::BenchOptions load_bench_file(const std::string& path) {
   section("room", read_room, options.world.room);
   section("plate", read_plate, options.world.plate);
   section("ring_clutter", read_clutter, options.world.ring_clutter);
+  section("axis", read_placement, options.lidar.axis);
+  section("mounting", read_placement, options.lidar.mounting);
   section("lidar", read_lidar, options.lidar);
   section("timing", read_timing, options.timing);
   section("stepper", read_motor, options.motor);

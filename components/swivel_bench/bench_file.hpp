@@ -1,4 +1,4 @@
-// The bench's world in a file (config/bench.yaml). Every key may be left out: it then has the
+// The bench's world in a file (config/benches/*.yaml). Every key may be left out: it then has the
 // value that the structs in hardware/sim give it. Unknown keys are errors.
 #pragma once
 

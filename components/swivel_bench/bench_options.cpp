@@ -7,9 +7,18 @@ namespace swivel {
 
 using sim::BenchOptions;
 
-BenchCommandLine::BenchCommandLine(CLI::App& app) : file_(shared_file("bench.yaml")) {
+namespace {
+
+std::string bench_file_of(const std::string& rig) {
+  return shared_file("benches/" + rig + ".yaml");
+}
+
+}  // namespace
+
+BenchCommandLine::BenchCommandLine(CLI::App& app) : file_(bench_file_of("yuan")) {
   add_files(app);
   add_world(app);
+  add_lidar(app);
   add_motor(app);
   add_misbehaviour(app);
 }
@@ -27,7 +36,13 @@ void BenchCommandLine::flag(CLI::App& app, const std::string& name, const std::s
 }
 
 void BenchCommandLine::add_files(CLI::App& app) {
-  app.add_option("--config", file_, "The bench's world")->capture_default_str();
+  CLI::Option* const file =
+      app.add_option("--config", file_, "The bench's world")->capture_default_str();
+  app.add_option_function<std::string>(
+         "--rig", [this](const std::string& rig) { file_ = bench_file_of(rig); },
+         "The world of a shipped rig: yuan, zeng or tilting")
+      ->excludes(file)
+      ->check(CLI::IsMember({"yuan", "zeng", "tilting"}));
   app.add_option("--log-level", log_level_, "What to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
       ->capture_default_str();
@@ -42,13 +57,37 @@ void BenchCommandLine::add_files(CLI::App& app) {
       ->check(CLI::Range(0, 65535));
 }
 
-void BenchCommandLine::add_world(CLI::App& app) {
+void BenchCommandLine::add_lidar(CLI::App& app) {
   option<double>(app, "--noise-mm", "Standard deviation of a range", [](BenchOptions& b, double v) {
     b.lidar.noise_mm = v;
   })->check(CLI::Range(0.0, 1000.0));
   option<double>(app, "--dropout-rate", "Of echoes lost", [](BenchOptions& b, double v) {
     b.lidar.dropout_rate = v;
   })->check(CLI::Range(0.0, 1.0));
+  option<double>(app, "--bias-deg", "Of the centreline: added to every beam's angle",
+                 [](BenchOptions& b, double v) { b.lidar.bias_deg = v; })
+      ->check(CLI::Range(-45.0, 45.0));
+  add_triple(app, "--mounting-xyz-mm", "X,Y,Z: how far the lidar is off its place on the axis",
+             &sim::Placement::xyz_mm);
+  add_triple(app, "--mounting-rpy-deg", "ROLL,PITCH,YAW: added to those of the mounting",
+             &sim::Placement::rpy_deg);
+  option<std::string>(
+      app, "--serial-number", "Of the lidar",
+      [](BenchOptions& b, const std::string& v) { b.lidar.sensor.serial_number = v; });
+}
+
+void BenchCommandLine::add_triple(CLI::App& app, const std::string& name, const std::string& help,
+                                  sim::Vector3 sim::Placement::*part) {
+  option<std::vector<double>>(app, name, help,
+                              [part](BenchOptions& b, const std::vector<double>& v) {
+                                sim::Vector3& value = b.lidar.mounting.*part;
+                                value = value + sim::Vector3{v[0], v[1], v[2]};
+                              })
+      ->delimiter(',')
+      ->expected(3);
+}
+
+void BenchCommandLine::add_world(CLI::App& app) {
   option<double>(app, "--alpha-deg", "Azimuth of the plate", [](BenchOptions& b, double v) {
     b.world.plate.alpha_deg = v;
   })->check(CLI::Range(-360.0, 360.0));

@@ -26,6 +26,7 @@ class BenchCommandLine {
 
   void add_files(CLI::App& app);
   void add_world(CLI::App& app);
+  void add_lidar(CLI::App& app);
   void add_motor(CLI::App& app);
   void add_misbehaviour(CLI::App& app);
 
@@ -40,6 +41,9 @@ class BenchCommandLine {
         help);
   }
   void flag(CLI::App& app, const std::string& name, const std::string& help, const Change& change);
+
+  void add_triple(CLI::App& app, const std::string& name, const std::string& help,
+                  sim::Vector3 sim::Placement::*part);
 
   std::string file_;
   std::string log_level_ = "info";

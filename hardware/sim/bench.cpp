@@ -23,10 +23,10 @@ Bench::Bench(const BenchOptions& options)
     : start_ns_(now_ns()),
       world_(options.world),
       lidar_(options.lidar, world_, options.seed),
-      timing_(options.timing, start_ns_, options.lidar.steps_per_turn, options.lidar.last_step,
-              options.seed),
+      timing_(options.timing, start_ns_, options.lidar.sensor.steps_per_turn,
+              options.lidar.sensor.last_step - options.lidar.sensor.first_step, options.seed),
       stepper_(options.motor, options.seed, start_ns_),
-      sensor_(options.lidar, timing_, std::llround(options.timing.start_latency_ms * 1e6)),
+      sensor_(options.lidar.sensor, timing_, std::llround(options.timing.start_latency_ms * 1e6)),
       truth_(options.truth_path),
       server_(options.server, sensor_, timing_,
               [this](std::uint64_t scan) { return cast_scan(scan); }),
@@ -38,7 +38,8 @@ void Bench::note_truth(const BenchOptions& options) {
   truth_.note("seed", options.seed);
   truth_.note("alpha_deg", options.world.plate.alpha_deg);
   truth_.note("scan_period_ns", timing_.scan_period_ns());
-  truth_.note("lever_arm_mm", options.lidar.lever_arm_mm);
+  note_placement("axis", options.lidar.axis);
+  note_placement("mounting", options.lidar.mounting);
   truth_.note("bias_deg", options.lidar.bias_deg);
   truth_.note("noise_mm", options.lidar.noise_mm);
   const RoomOptions& room = options.world.room;
@@ -51,6 +52,15 @@ void Bench::note_truth(const BenchOptions& options) {
   truth_.note("room_yaw_deg", room.yaw_deg);
   truth_.note("room_front_skew_deg", room.front_skew_deg);
   truth_.begin_rows();
+}
+
+void Bench::note_placement(const std::string& what, const Placement& placement) {
+  truth_.note(what + "_x_mm", placement.xyz_mm.x);
+  truth_.note(what + "_y_mm", placement.xyz_mm.y);
+  truth_.note(what + "_z_mm", placement.xyz_mm.z);
+  truth_.note(what + "_roll_deg", placement.rpy_deg.x);
+  truth_.note(what + "_pitch_deg", placement.rpy_deg.y);
+  truth_.note(what + "_yaw_deg", placement.rpy_deg.z);
 }
 
 LineReading Bench::cast_scan(std::uint64_t scan) {

@@ -39,6 +39,7 @@ class Bench {
  private:
   LineReading cast_scan(std::uint64_t scan);
   void note_truth(const BenchOptions& options);
+  void note_placement(const std::string& what, const Placement& placement);
   void wait(const WakeUp& stop) const;
 
   std::int64_t start_ns_;

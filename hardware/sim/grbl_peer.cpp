@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t kReceiveBuffer = 127;  // 128 bytes, one of which marks its end
 constexpr std::size_t kLongestLine = 79;
 constexpr int kPlannerBlocks = 15;
+constexpr std::uint64_t kLatencyStream = 0x1A7E;
 constexpr char kReset = 0x18;
 constexpr char kJogCancel = static_cast<char>(0x85);
 constexpr const char* kBanner = "\r\nGrbl 1.1h ['$' for help]\r\n";
@@ -17,7 +18,10 @@ constexpr const char* kUnlockHint = "[MSG:'$H'|'$X' to unlock]\r\n";
 }  // namespace
 
 GrblPeer::GrblPeer(const MotorOptions& options, std::uint64_t seed, std::int64_t now_ns)
-    : options_(options), axis_(options, seed, now_ns) {
+    : options_(options),
+      settings_(options.travel_deg),
+      axis_(options, seed, now_ns),
+      latency_(seed, kLatencyStream) {
   power_up(now_ns);
 }
 
@@ -88,7 +92,7 @@ void GrblPeer::take_byte(char byte, std::int64_t now_ns) {
   } else if (starting) {
     return;
   } else if (byte == '?') {
-    status_requested_ = true;
+    take_status_request(now_ns);
   } else if (byte == '!' || byte == '~' || override_byte) {
     if (deaf) return;
     if (byte == '!') hold(now_ns);
@@ -130,7 +134,9 @@ void GrblPeer::advance(std::int64_t now_ns) {
   if (state_ == State::kHome) advance_homing(now_ns);
   if (state_ == State::kHome) return;
   advance_motion(now_ns);
-  if (status_requested_ && !dead_) output_ += status_report(now_ns);
+  if (status_requested_ && !dead_ && now_ns >= report_due_ns_) {
+    output_ += status_report(report_of_ns_);
+  }
   if (!dead_) take_lines(now_ns);
 }
 

@@ -62,6 +62,7 @@ class GrblPeer {
   double target_deg(const GrblWords& words, bool absolute) const;
   bool beyond_travel(double target_deg) const;
 
+  void take_status_request(std::int64_t now_ns);
   std::string status_report(std::int64_t now_ns);
   std::string state_name(std::int64_t now_ns) const;
   bool in_motion_state() const;
@@ -69,6 +70,7 @@ class GrblPeer {
   MotorOptions options_;
   GrblSettings settings_;
   MotorAxis axis_;
+  Random latency_;
   State state_ = State::kIdle;
   std::string received_;
   std::string output_;
@@ -77,6 +79,8 @@ class GrblPeer {
   bool dead_ = false;        // after a hard or soft limit: only a reset is heard
   bool reset_requested_ = false;
   bool status_requested_ = false;
+  std::int64_t report_due_ns_ = 0;  // of the request
+  std::int64_t report_of_ns_ = 0;
   bool absolute_ = true;
   int motion_word_ = 0;
   double feed_per_min_ = 0.0;

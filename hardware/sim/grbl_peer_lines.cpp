@@ -157,6 +157,18 @@ std::string GrblPeer::state_name(std::int64_t now_ns) const {
   return "Sleep";
 }
 
+// GRBL answers at once; an encoder is read first, and its reading sent.
+void GrblPeer::take_status_request(std::int64_t now_ns) {
+  if (status_requested_) return;
+  status_requested_ = true;
+  report_due_ns_ = report_of_ns_ = now_ns;
+  const EncoderOptions& encoder = options_.encoder;
+  if (!encoder.present) return;
+  const double latency_s = 1e-3 * latency_.uniform(encoder.latency_min_ms, encoder.latency_max_ms);
+  report_due_ns_ += ns_from_s(latency_s);
+  report_of_ns_ += ns_from_s(latency_s * latency_.uniform());
+}
+
 // The work offset comes with the first report and every 10th (30th in motion); the overrides
 // with the report after it.
 std::string GrblPeer::status_report(std::int64_t now_ns) {

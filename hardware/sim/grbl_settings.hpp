@@ -9,7 +9,7 @@ namespace swivel::sim {
 
 class GrblSettings {
  public:
-  GrblSettings();  // as shipped with the bench: modes 1 to 7 work
+  explicit GrblSettings(double travel_deg = 360.0);  // as shipped with the bench
 
   // False when there is no such setting, or it cannot have that value.
   bool set(int number, double value);

@@ -1,9 +1,10 @@
 // The lidar's optics: a scan line is cast beam by beam, each at its own instant, from where
 // the shaft is at that instant. Pure: a sweep takes as long as the arithmetic does.
 //
-// Frame O, shaft at azimuth phi (of the scan plane's normal, counter-clockwise from above):
-// the lidar's centre is at Rz(phi) (lever_arm, 0, 0), and beam theta leaves it towards
-// Rz(phi) (0, sin theta, cos theta) (Yuan 2021, eqs. 4 and 5).
+// Beam theta leaves the lidar's centre towards (0, sin theta, cos theta) of its own frame. The
+// lidar is mounted on the axis, which turns it by the shaft's angle about its Z, and the axis
+// stands in the base. On Yuan's rig the centre is thus at Rz(phi) (lever arm, 0, 0), and the beam
+// goes to Rz(phi) (0, sin theta, cos theta) (Yuan 2021, eqs. 4 and 5).
 #pragma once
 
 #include <cstdint>
@@ -17,17 +18,15 @@
 
 namespace swivel::sim {
 
-inline constexpr std::uint16_t kTooNear = 4;       // what the sensor says below 21 mm
-inline constexpr std::uint16_t kNoReturn = 65533;  // and beyond 30 m, or of a weak echo
-
 struct LineInstant {
   std::uint64_t line_index = 0;    // chooses the noise, together with the seed
   std::int64_t beam0_time_ns = 0;  // beam k fires at beam0 + k * beam_period
   double beam_period_ns = 0.0;
 };
 
+// From the sensor's first step on.
 struct LineReading {
-  std::vector<std::uint16_t> ranges_mm;  // or kTooNear, kNoReturn
+  std::vector<std::uint16_t> ranges_mm;  // or the sensor's too_near, no_return
   std::vector<std::uint16_t> intensities;
 };
 
@@ -45,8 +44,11 @@ class Lidar {
  private:
   Ray ray(int step, double shaft_angle_rad) const;
   double measured_mm(double distance_m, Random& random) const;
+  std::uint16_t coded(double range_mm) const;
 
   LidarOptions options_;
+  Pose axis_;
+  Pose mounting_;
   Spot spot_;
   const World* world_;
   std::uint64_t seed_;

@@ -1,14 +1,16 @@
-// The lidar's build and its faults.
+// The lidar: which one, how it is mounted, and its faults.
 #pragma once
+
+#include "hardware/sim/placement.hpp"
+#include "hardware/sim/sensor_model.hpp"
 
 namespace swivel::sim {
 
 struct LidarOptions {
-  int last_step = 1080;
-  int front_step = 540;
-  int steps_per_turn = 1440;
-  double lever_arm_mm = 13.9;
-  double bias_deg = 0.0;  // added to every beam's angle (Zeng 2018)
+  SensorModel sensor;
+  Placement axis;                                   // of the axis in the base, frame O
+  Placement mounting{{13.9, 0.0, 0.0}, {0, 0, 0}};  // of the lidar on the axis
+  double bias_deg = 0.0;                            // added to every beam's angle (Zeng 2018)
   double noise_mm = 13.0;
   double range_bias_mm = 0.0;
   double near_bias_mm = 0.0;    // at range 0, fading with a length of 0.3 m

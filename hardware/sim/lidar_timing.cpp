@@ -14,12 +14,12 @@ constexpr std::uint64_t kSendStream = 0x5E4D;  // keeps the jitter apart from th
 }  // namespace
 
 LidarTiming::LidarTiming(const LidarTimingOptions& options, std::int64_t power_up_ns,
-                         int steps_per_turn, int last_step, std::uint64_t seed)
+                         int steps_per_turn, int last_beam, std::uint64_t seed)
     : options_(options),
       power_up_ns_(power_up_ns),
       period_ns_(options.scan_period_ms * kNsPerMs),
       steps_per_turn_(steps_per_turn),
-      last_step_(last_step),
+      last_beam_(last_beam),
       seed_(seed),
       counter_start_ms_(options.stamp_start_ms),
       counter_since_ns_(power_up_ns) {}
@@ -37,7 +37,7 @@ std::int64_t LidarTiming::beam0_time_ns(std::uint64_t scan) const {
 
 std::int64_t LidarTiming::send_time_ns(std::uint64_t scan) const {
   const double last_beam_ns =
-      static_cast<double>(beam0_time_ns(scan) - power_up_ns_) + last_step_ * beam_period_ns();
+      static_cast<double>(beam0_time_ns(scan) - power_up_ns_) + last_beam_ * beam_period_ns();
   const double tick_ns = std::ceil(last_beam_ns / kNsPerMs) * kNsPerMs;
   Random random(seed_ ^ kSendStream, scan);
   const double delay_ms = options_.send_delay_ms + random.uniform(0.0, options_.send_jitter_ms);
@@ -57,7 +57,7 @@ std::uint32_t LidarTiming::counter_ms(std::int64_t time_ns) const {
 
 // The rear centre is passed before the first beam, by the angle between them.
 std::uint32_t LidarTiming::stamp_ms(std::uint64_t scan) const {
-  const double dead_steps = steps_per_turn_ - last_step_;
+  const double dead_steps = steps_per_turn_ - last_beam_;
   const double earlier_ns =
       options_.stamp_at_rear_centre ? 0.5 * dead_steps * beam_period_ns() : 0.0;
   return counter_ms(beam0_time_ns(scan) - std::llround(earlier_ns));

@@ -18,8 +18,9 @@ struct LidarTimingOptions {
 
 class LidarTiming {
  public:
+  // last_beam: of a scan, counted from 0 at the fan's first.
   LidarTiming(const LidarTimingOptions& options, std::int64_t power_up_ns, int steps_per_turn,
-              int last_step, std::uint64_t seed);
+              int last_beam, std::uint64_t seed);
 
   double beam_period_ns() const { return period_ns_ / steps_per_turn_; }
   double scan_period_ns() const { return period_ns_; }
@@ -40,7 +41,7 @@ class LidarTiming {
   std::int64_t power_up_ns_;
   double period_ns_;
   int steps_per_turn_;
-  int last_step_;
+  int last_beam_;
   std::uint64_t seed_;
   double counter_start_ms_;
   std::int64_t counter_since_ns_;

@@ -36,6 +36,7 @@ void MotorAxis::move_to(double target_deg, double speed_deg_s, const GrblSetting
 void MotorAxis::zero_position(std::int64_t now_ns) {
   motion_.halt(now_ns);
   origin_steps_ = motion_.position_at(now_ns);
+  encoder_origin_deg_ = shaft_angle_deg(now_ns);
 }
 
 std::array<std::int64_t, 4> MotorAxis::begin_homing(const GrblSettings& settings,
@@ -64,6 +65,7 @@ void MotorAxis::finish_homing(const GrblSettings& settings, std::int64_t now_ns)
   motion_.place(std::round(home) + motion_.lost_steps_now(), now_ns);
   origin_steps_ = motion_.position_at(now_ns) -
                   std::round(settings.homed_position_deg() * settings.steps_per_deg());
+  encoder_origin_deg_ = shaft_angle_deg(now_ns) - settings.homed_position_deg();
 }
 
 int MotorAxis::queued(std::int64_t now_ns) {
@@ -72,6 +74,10 @@ int MotorAxis::queued(std::int64_t now_ns) {
 }
 
 double MotorAxis::position_deg(const GrblSettings& settings, std::int64_t now_ns) const {
+  if (options_.encoder.present) {
+    const double measured_deg = shaft_angle_deg(now_ns) - encoder_origin_deg_;
+    return std::round(measured_deg / options_.encoder.step_deg) * options_.encoder.step_deg;
+  }
   return (std::round(motion_.position_at(now_ns)) - origin_steps_) / settings.steps_per_deg();
 }
 

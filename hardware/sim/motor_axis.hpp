@@ -11,6 +11,15 @@
 
 namespace swivel::sim {
 
+// An encoder on the shaft: MPos is then what it says, in place of the steps sent out.
+struct EncoderOptions {
+  bool present = false;
+  double step_deg = 0.01;
+  // From `?` to its answer. The angle is of some instant between the two.
+  double latency_min_ms = 0.5;
+  double latency_max_ms = 4.0;
+};
+
 struct MotorOptions {
   ShaftOptions shaft;
   double home_angle_deg = -75.0;  // of the shaft once homed, on average
@@ -23,6 +32,8 @@ struct MotorOptions {
   double boot_s = 0.2;        // from opening the port, which resets the controller, to the banner
   int lose_every = 0;         // each Nth step is lost; 0 for none
   double lose_after_s = 0.0;  // from this long after the start of the bench
+  double travel_deg = 360.0;  // $130 as shipped
+  EncoderOptions encoder;
 };
 
 class MotorAxis {
@@ -43,7 +54,7 @@ class MotorAxis {
 
   bool moving(std::int64_t now_ns) const { return motion_.moving(now_ns); }
   int queued(std::int64_t now_ns);
-  double position_deg(const GrblSettings& settings, std::int64_t now_ns) const;
+  double position_deg(const GrblSettings& settings, std::int64_t now_ns) const;  // MPos
   double planned_end_deg(const GrblSettings& settings) const;
   double believed_speed_deg_s(const GrblSettings& settings, std::int64_t now_ns) const;
   bool at_switch(const GrblSettings& settings, std::int64_t now_ns) const;
@@ -57,6 +68,7 @@ class MotorAxis {
   Random random_;
   Motion motion_;
   double origin_steps_ = 0.0;  // where MPos is 0
+  double encoder_origin_deg_ = 0.0;
   double home_error_deg_ = 0.0;
 };
 

@@ -28,9 +28,8 @@ std::string command_of(const std::string& request) {
 
 }  // namespace
 
-ScipSensor::ScipSensor(const LidarOptions& options, LidarTiming& timing,
-                       std::int64_t start_latency_ns)
-    : options_(options), timing_(&timing), start_latency_ns_(start_latency_ns) {}
+ScipSensor::ScipSensor(SensorModel model, LidarTiming& timing, std::int64_t start_latency_ns)
+    : model_(std::move(model)), timing_(&timing), start_latency_ns_(start_latency_ns) {}
 
 void ScipSensor::connect() {
   stop();
@@ -63,6 +62,8 @@ std::string ScipSensor::reply_to(const std::string& request, std::int64_t now_ns
   if (request.size() > command.size() + 1 + kLongestString) return whole_reply(request, "0G");
   const std::string two = command.substr(0, 2);
   if (two == "MS" || two == "GS") return {};  // a UST does not answer these
+  const bool intensities = two == "ME" || two == "GE";
+  if (intensities && !model_.tells_intensities) return whole_reply(request, "0E");
   if (two == "MD" || two == "ME" || two == "GD" || two == "GE") return take_order(request, now_ns);
   if (command == "QT") {
     stop();
@@ -92,33 +93,33 @@ std::string ScipSensor::reply_to_state_request(const std::string& request, std::
 std::string ScipSensor::identity(const std::string& request) const {
   std::string text = reply(request, "00");
   scip::append_key(text, "VEND", "Hokuyo Automatic Co.,Ltd.");
-  scip::append_key(text, "PROD", "UST-10LX");
-  scip::append_key(text, "FIRM", "2.23.0000");  // sends on the next 1 ms tick
-  scip::append_key(text, "PROT", "SCIP 2.2");
-  scip::append_key(text, "SERI", "H0000000");
+  scip::append_key(text, "PROD", model_.product);
+  scip::append_key(text, "FIRM", model_.firmware);
+  scip::append_key(text, "PROT", model_.protocol);
+  scip::append_key(text, "SERI", model_.serial_number);
   return text + "\n";
 }
 
 std::string ScipSensor::parameters(const std::string& request) const {
   std::string text = reply(request, "00");
-  scip::append_key(text, "MODL", "UST-10LX");
-  scip::append_key(text, "DMIN", "20");
-  scip::append_key(text, "DMAX", "30000");
-  scip::append_key(text, "ARES", std::to_string(options_.steps_per_turn));
-  scip::append_key(text, "AMIN", "0");
-  scip::append_key(text, "AMAX", std::to_string(options_.last_step));
-  scip::append_key(text, "AFRT", std::to_string(options_.front_step));
-  scip::append_key(text, "SCAN", "2400");
+  scip::append_key(text, "MODL", model_.product);
+  scip::append_key(text, "DMIN", std::to_string(model_.said_nearest_mm));
+  scip::append_key(text, "DMAX", std::to_string(model_.said_farthest_mm));
+  scip::append_key(text, "ARES", std::to_string(model_.steps_per_turn));
+  scip::append_key(text, "AMIN", std::to_string(model_.first_step));
+  scip::append_key(text, "AMAX", std::to_string(model_.last_step));
+  scip::append_key(text, "AFRT", std::to_string(model_.front_step));
+  scip::append_key(text, "SCAN", std::to_string(model_.revolutions_per_minute));
   return text + "\n";
 }
 
 std::string ScipSensor::state(const std::string& request, std::int64_t now_ns) const {
   std::string text = reply(request, "00");
-  scip::append_key(text, "MODL", "UST-10LX");
+  scip::append_key(text, "MODL", model_.product);
   scip::append_key(text, "LASR", laser_on_ ? "ON" : "OFF");
-  scip::append_key(text, "SCSP", "2400");
+  scip::append_key(text, "SCSP", std::to_string(model_.revolutions_per_minute));
   scip::append_key(text, "MESM", "Measuring by Sensitive Mode");
-  scip::append_key(text, "SBPS", "Ethernet 100[Mbps]");
+  scip::append_key(text, "SBPS", model_.interface_words);
   scip::append_key(text, "TIME", scip::encode_value(timing_->counter_ms(now_ns), 4));
   scip::append_key(text, "STAT", "sensor is working normally");
   return text + "\n";

@@ -1,4 +1,4 @@
-// A UST-10LX's side of SCIP: requests in, replies out, and which scans were asked for. No
+// A Hokuyo's side of SCIP: requests in, replies out, and which scans were asked for. No
 // sockets, and time is an argument. The grammar stands in hardware/lidar/scip.hpp.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace swivel::sim {
 class ScipSensor {
  public:
   // `timing` must outlive the sensor.
-  ScipSensor(const LidarOptions& options, LidarTiming& timing, std::int64_t start_latency_ns);
+  ScipSensor(SensorModel model, LidarTiming& timing, std::int64_t start_latency_ns);
 
   void connect();  // a new client: quiet, whatever went before
   std::string receive(std::string_view bytes, std::int64_t now_ns);
@@ -59,7 +59,7 @@ class ScipSensor {
   std::string frame(const Order& order, const LineReading& line) const;
   void stop();
 
-  LidarOptions options_;
+  SensorModel model_;
   LidarTiming* timing_;
   std::int64_t start_latency_ns_;
   std::string unfinished_;

@@ -44,7 +44,7 @@ const char* ScipSensor::parse_order(const std::string& parameters, Order& order)
   if (!first) return "01";
   if (!last) return "02";
   if (!cluster) return "03";
-  if (*last > options_.last_step) return "04";
+  if (*first < model_.first_step || *last > model_.last_step) return "04";
   if (*last < *first) return "05";
   order.first_step = *first;
   order.last_step = *last;
@@ -129,11 +129,11 @@ std::string ScipSensor::frame(const Order& order, const LineReading& line) const
   scip::append_text(text, order.continuous ? "99" : "00");
   scip::append_text(text, scip::encode_value(timing_->stamp_ms(order.scan), 4));
   std::string data;
-  const std::size_t end =
-      std::min(line.ranges_mm.size(), static_cast<std::size_t>(order.last_step) + 1);
+  const auto beam_of = [&](int step) { return static_cast<std::size_t>(step - model_.first_step); };
+  const std::size_t end = std::min(line.ranges_mm.size(), beam_of(order.last_step) + 1);
   const auto cluster = static_cast<std::size_t>(order.cluster);
-  for (auto step = static_cast<std::size_t>(order.first_step); step < end; step += cluster) {
-    const std::size_t chosen = nearest_of(line, step, std::min(end, step + cluster));
+  for (std::size_t beam = beam_of(order.first_step); beam < end; beam += cluster) {
+    const std::size_t chosen = nearest_of(line, beam, std::min(end, beam + cluster));
     scip::append_value(data, line.ranges_mm[chosen], 3);
     if (order.intensities) scip::append_value(data, line.intensities[chosen], 3);
   }

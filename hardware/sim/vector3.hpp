@@ -27,7 +27,17 @@ inline double dot(const Vector3& a, const Vector3& b) {
 inline Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// Counter-clockwise seen from above.
+// Counter-clockwise seen from the tip of the axis; about Z: from above.
+inline Vector3 turned_about_x(const Vector3& v, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {v.x, c * v.y - s * v.z, s * v.y + c * v.z};
+}
+inline Vector3 turned_about_y(const Vector3& v, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
+}
 inline Vector3 turned_about_z(const Vector3& v, double angle_rad) {
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);

@@ -16,7 +16,7 @@ must(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 must(${SCRATCH}/build/consumer)
 
 must(${SCRATCH}/prefix/bin/swivel --version)
-foreach(file rigs/yuan.yaml dds_profiles.xml bench.yaml idl/swivel.idl idl/point_cloud2.idl)
+foreach(file rigs/yuan.yaml dds_profiles.xml benches/yuan.yaml idl/swivel.idl idl/point_cloud2.idl)
   if(NOT EXISTS ${SCRATCH}/prefix/share/swivel/${file})
     message(FATAL_ERROR "share/swivel/${file} was not installed")
   endif()

@@ -18,10 +18,10 @@ constexpr std::uint64_t kDrawnStream = 0xD4A3;
 
 ForwardModel model_of(const sim::LidarOptions& lidar) {
   RigGeometry rig = yuans_rig();
-  rig.T_axis_lidar.translation().x() = m_from_mm(lidar.lever_arm_mm);
-  const double step_rad = 2.0 * kPi / lidar.steps_per_turn;
-  return {rig, -lidar.front_step * step_rad, step_rad,
-          static_cast<std::size_t>(lidar.last_step) + 1};
+  rig.T_axis_lidar.translation().x() = m_from_mm(lidar.mounting.xyz_mm.x);
+  const double step_rad = 2.0 * kPi / lidar.sensor.steps_per_turn;
+  return {rig, -lidar.sensor.front_step * step_rad, step_rad,
+          static_cast<std::size_t>(lidar.sensor.last_step) + 1};
 }
 
 // The commanded turn and the true one, from the instant of the first beam.
@@ -87,9 +87,9 @@ BenchSweepOptions drawn_sweep(Tier tier, int mode, std::uint64_t seed) {
 BenchSweep make_bench_sweep(const BenchSweepOptions& options) {
   const std::size_t lines = kLinesOfMode.at(static_cast<std::size_t>(options.mode) - 1);
   sim::LidarOptions optics = options.lidar;
-  if (options.plate_beams_only) optics.last_step = kLastPlateStep;
+  if (options.plate_beams_only) optics.sensor.last_step = kLastPlateStep;
   const double speed_deg_ms = 180.0 / (static_cast<double>(lines) * kNominalPeriod_ms);
-  const double beam_period_ns = options.scan_period_ms * 1e6 / optics.steps_per_turn;
+  const double beam_period_ns = options.scan_period_ms * 1e6 / optics.sensor.steps_per_turn;
   const double angle_per_line_rad = rad_from_deg(speed_deg_ms * options.scan_period_ms);
 
   const sim::World world(options.world);
@@ -106,7 +106,7 @@ BenchSweep make_bench_sweep(const BenchSweepOptions& options) {
     const auto beam0_ns = std::llround(count * options.scan_period_ms * 1e6);
     const auto cast = lidar.cast_line({line, beam0_ns, beam_period_ns}, shaft_angle);
     assembler.assemble({cast.ranges_mm, cast.intensities, 20, 30000}, count * angle_per_line_rad,
-                       angle_per_line_rad / optics.steps_per_turn, sweep.cloud.line(line));
+                       angle_per_line_rad / optics.sensor.steps_per_turn, sweep.cloud.line(line));
   }
   sweep.phi_start_rad = rad_from_deg(options.phi_start_deg);
   sweep.alpha_rad = rad_from_deg(options.world.plate.alpha_deg);

@@ -24,7 +24,10 @@ TruthFile::TruthFile(const std::string& path) {
     std::uint32_t stamp_ms = 0;
     std::int64_t time_ns = 0;
     double phi_deg = 0.0;
-    if (words >> stamp_ms >> comma >> time_ns >> comma >> phi_deg) phi_deg_[stamp_ms] = phi_deg;
+    if (words >> stamp_ms >> comma >> time_ns >> comma >> phi_deg) {
+      phi_deg_[stamp_ms] = phi_deg;
+      lines_.push_back({time_ns, phi_deg});
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace swivel {
 
@@ -18,7 +19,15 @@ class TruthFile {
   std::optional<double> phi_deg(std::uint32_t device_stamp_ms) const;
   std::optional<double> number(const std::string& key) const;
 
+  // Of every line, in order.
+  struct Line {
+    std::int64_t beam0_time_ns;
+    double phi_deg;
+  };
+  const std::vector<Line>& lines() const { return lines_; }
+
  private:
+  std::vector<Line> lines_;
   std::map<std::uint32_t, double> phi_deg_;
   std::map<std::string, double> numbers_;
 };

@@ -50,13 +50,27 @@ RigFile rig_of(const RecordingFacts& facts, const std::string& path, const std::
   return rig;
 }
 
+void play(Recording recording, Assembler& assembler) {
+  while (true) {
+    auto event = recording.next();
+    if (!event) throw ExitError(kExitBadData, event.reason());
+    if (!event->has_value()) break;
+    std::visit([&](const auto& message) { assembler.add(message); }, (*event)->message);
+  }
+  assembler.finish();
+}
+
 void run_offline(Recording recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
                  const std::function<void(ProcessedSweep&&)>& on_sweep) {
   Corrector corrector(rig);
-  if (calibration) corrector.set_calibration(*calibration);
-  const AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
-                                rad_from_deg(rig.modes.sweep_angle_deg)};
+  AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
+                          rad_from_deg(rig.modes.sweep_angle_deg)};
+  if (calibration) {
+    const std::string wrong = corrector.set_calibration(*calibration);
+    if (!wrong.empty()) throw ExitError(kExitBadData, "the calibration was refused: " + wrong);
+    options.geometry = calibrated_geometry(rig.geometry, *calibration);
+  }
   Assembler assembler(options, [&](AssembledSweep&& assembled) {
     ProcessedSweep processed;
     processed.index = assembled.sweep.sweep_id() - 1;
@@ -66,13 +80,7 @@ void run_offline(Recording recording, const RigFile& rig,
     processed.attitude = corrector.correct(processed.sweep, processed.cloud);
     on_sweep(std::move(processed));
   });
-  while (true) {
-    auto event = recording.next();
-    if (!event) throw ExitError(kExitBadData, event.reason());
-    if (!event->has_value()) break;
-    std::visit([&](const auto& message) { assembler.add(message); }, (*event)->message);
-  }
-  assembler.finish();
+  play(std::move(recording), assembler);
 }
 
 }  // namespace swivel

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "components/cloud_assembler/assembler.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/recording/recording.hpp"
 #include "components/swivel/offline/processed_sweep.hpp"
@@ -17,6 +18,9 @@ Recording open_recording(const std::string& path);
 // The rig file asked for. Without one the rig that the recording suggests, with what the
 // recording itself says of its plate. Throws ConfigurationError or ExitError.
 RigFile rig_of(const RecordingFacts& facts, const std::string& path, const std::string& rig_file);
+
+// All of it through the assembler, to its end. Throws ExitError where the recording is damaged.
+void play(Recording recording, Assembler& assembler);
 
 // Calls on_sweep for each sweep in order. Throws ExitError where the recording is damaged.
 void run_offline(Recording recording, const RigFile& rig,

@@ -130,9 +130,11 @@ Json to_json(const msg::Calibration& calibration) {
 }
 
 Json to_json(const msg::CalibrationRequest& request) {
-  return {{"rig", request.rig().to_string()},   {"sequence_number", request.sequence_number()},
-          {"request_id", request.request_id()}, {"mode", request.mode()},
-          {"count", request.count()},           {"room_yaw_deg", request.room_yaw_deg()}};
+  return {
+      {"rig", request.rig().to_string()},         {"sequence_number", request.sequence_number()},
+      {"request_id", request.request_id()},       {"mode", request.mode()},
+      {"kind", static_cast<int>(request.kind())}, {"count", request.count()},
+      {"room_yaw_deg", request.room_yaw_deg()}};
 }
 
 Json to_json(const msg::CalibrationProgress& progress) {

@@ -194,6 +194,20 @@ TEST(Corrector, SaysThatACalibrationIsDueWhenThePlateIsNotAsItWas) {
   }
 }
 
+TEST(Corrector, ACalibrationOfAnotherLidarIsLeftAsSoonAsThatIsKnown) {
+  Corrector corrector(yuans_rig_file());
+  msg::Calibration known = calibration(28.5, 0.4);
+  known.serial_number("H1");
+  ASSERT_TRUE(corrector.set_calibration(known).empty());
+  OrganisedCloud cloud = recorded().sweeps[0].cloud;
+  EXPECT_TRUE(corrector.correct(whole_sweep(), cloud).calibrated());
+  EXPECT_THAT(corrector.name_lidar("H2"), HasSubstr("H1"));
+  cloud = recorded().sweeps[0].cloud;
+  const msg::Attitude attitude = corrector.correct(whole_sweep(), cloud);
+  EXPECT_FALSE(attitude.calibrated());
+  EXPECT_DOUBLE_EQ(attitude.alpha_deg(), 30.0);
+}
+
 TEST(Corrector, ACalibrationThatIsNoNumberIsNotTaken) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Corrector corrector(yuans_rig_file());

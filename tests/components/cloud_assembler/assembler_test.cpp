@@ -106,6 +106,36 @@ TEST(Assembler, AMeasuredAxisGivesTheBaseItself) {
             3e-6);
 }
 
+// What is kept for a calibration, put through the forward model, is the cloud.
+TEST(Assembler, KeepsWhatTheCloudWasMadeOf) {
+  const Story story;
+  AssemblyOptions options = story_options();
+  options.keep_readings = true;
+  Stage stage(options);
+  stage.add(story.axis());
+  stage.add(story.cruising());
+  stage.add_lines(story, 0, 12);
+  ASSERT_EQ(stage.sweeps.size(), 1U);
+  const SweepReadings& readings = stage.sweeps[0].readings;
+  ASSERT_EQ(readings.lines.size(), 12U);
+  const ForwardModel model(story_geometry(), readings.first_beam_angle_rad, readings.beam_step_rad,
+                           readings.beams());
+  OrganisedCloud cloud = stage.sweeps[0].cloud;
+  for (std::size_t row = 0; row < cloud.lines; ++row) {
+    const LineOfReadings& line = readings.lines[row];
+    EXPECT_FALSE(line.turning_down);
+    for (std::size_t beam = 0; beam < cloud.beams; ++beam) {
+      const Eigen::Vector3f p =
+          model
+              .point(beam, line.ranges_m[beam],
+                     line.axis_angle_rad + static_cast<double>(beam) * line.angle_per_beam_rad)
+              .cast<float>();
+      cloud.line(row)[beam] = {p.x(), p.y(), p.z(), cloud.line(row)[beam].intensity};
+    }
+  }
+  expect_same(stage.sweeps[0].cloud, cloud);
+}
+
 TEST(Assembler, AnAxisThatIsNotStraightInsideALineIsFollowedBeamByBeam) {
   const Story story;
   AssemblyOptions options = story_options();

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
+#include <random>
 
 #include "tests/components/stepper_sequencer/sequencer_rig.hpp"
 
@@ -157,6 +157,102 @@ TEST(Sequencer, StopAndGoStandsStillInEveryWindow) {
     before_ns = sweep.window_end_ns();
   }
   expect_never_beyond_the_cable(rig);
+}
+
+// Within 50 ms: as long as a loaded computer may take for a question and its answer, and half.
+void expect_passed_about_then(const SequencerRig& rig, const msg::AxisSample& sample) {
+  if (sample.time_ns() < rig.peer.turns().front().start_ns + 50'000'000) return;
+  double lowest_deg = 1e9;
+  double highest_deg = -1e9;
+  for (int part = -10; part <= 10; ++part) {
+    const std::int64_t time_ns = sample.time_ns() + part * 5'000'000;
+    const double true_deg = rig.axis_deg(rig.turn_at(time_ns).angle_deg(time_ns));
+    lowest_deg = std::min(lowest_deg, true_deg);
+    highest_deg = std::max(highest_deg, true_deg);
+  }
+  EXPECT_GT(sample.angle_deg(), lowest_deg - 0.01);
+  EXPECT_LT(sample.angle_deg(), highest_deg + 0.01);
+}
+
+// Each angle said of a pan unit is one that the shaft passed about then, and every window lies
+// between samples.
+TEST(Sequencer, AMeasuredAxisIsToldAsTheControllerReportsIt) {
+  SequencerRig rig({}, [](SequencerOptions& options) {
+    options.sweep.axis_measured = true;
+    options.poll_interval_s = 0.02;
+  });
+  ASSERT_TRUE(rig.ready());
+  rig.ask(3, 2);
+  ASSERT_TRUE(rig.await(msg::PHASE_IDLE, 2));
+  std::vector<msg::AxisSample> samples;
+  for (const msg::Axis& axis : rig.axes()) {
+    EXPECT_EQ(axis.source(), msg::AXIS_MEASURED);
+    for (const msg::AxisSample& sample : axis.samples()) {
+      EXPECT_TRUE(samples.empty() || sample.time_ns() > samples.back().time_ns());
+      samples.push_back(sample);
+      expect_passed_about_then(rig, sample);
+    }
+  }
+  for (const msg::Sweep& window : rig.sweeps(msg::PHASE_CRUISING)) {
+    const auto within = std::count_if(samples.begin(), samples.end(), [&](const auto& sample) {
+      return sample.time_ns() > window.window_start_ns() &&
+             sample.time_ns() < window.window_end_ns();
+    });
+    EXPECT_GE(within, 3);
+    EXPECT_LT(samples.front().time_ns(), window.window_start_ns());
+    EXPECT_GT(samples.back().time_ns(), window.window_end_ns());
+  }
+}
+
+StepperStatus report_of(double speed_deg_s, std::int64_t asked_ns, std::int64_t measured_ns,
+                        std::int64_t answered_ns) {
+  StepperStatus report;
+  report.asked_ns = asked_ns;
+  report.answered_ns = answered_ns;
+  report.angle_deg = speed_deg_s * 1e-9 * static_cast<double>(measured_ns);
+  return report;
+}
+
+// The instant of a position is anywhere between question and answer; here answers take 0.5 to
+// 20 ms, as on a busy computer.
+TEST(MeasuredAxis, TakesTheReportsWhoseInstantIsCertain) {
+  constexpr double kSpeed_deg_s = 80.0;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  MeasuredAxis axis;
+  double squares = 0.0;
+  int taken = 0;
+  std::int64_t last_ns = 0;
+  std::int64_t now_ns = 1'000'000'000;
+  for (int i = 0; i < 2000; ++i, now_ns += 20'000'000) {
+    const double hurry = part(random);
+    const auto trip_ns = static_cast<std::int64_t>(5e5 + 19.5e6 * hurry * hurry);
+    const auto waited_ns = static_cast<std::int64_t>(part(random) * static_cast<double>(trip_ns));
+    const auto sample =
+        axis.add(report_of(kSpeed_deg_s, now_ns, now_ns + waited_ns, now_ns + trip_ns));
+    if (!sample) continue;
+    const double error_deg =
+        sample->angle_deg() - kSpeed_deg_s * 1e-9 * static_cast<double>(sample->time_ns());
+    EXPECT_LE(std::abs(error_deg), kSpeed_deg_s * 0.5e-9 * static_cast<double>(trip_ns) + 1e-6);
+    EXPECT_TRUE(last_ns == 0 || sample->time_ns() - last_ns <= 230'000'000);
+    last_ns = sample->time_ns();
+    squares += error_deg * error_deg;
+    ++taken;
+  }
+  EXPECT_EQ(static_cast<std::uint64_t>(taken) + axis.left_out(), 2000U);
+  EXPECT_GT(taken, 300);
+  EXPECT_LT(std::sqrt(squares / taken), 0.1);  // of all of them it is 0.2 deg
+}
+
+TEST(MeasuredAxis, LeavesOutWhatIsNoAngleOrNotLater) {
+  MeasuredAxis axis;
+  EXPECT_TRUE(axis.add(report_of(1.0, 1'000'000, 1'200'000, 1'400'000)));
+  EXPECT_FALSE(axis.add(report_of(1.0, 1'000'000, 1'200'000, 1'400'000)));
+  StepperStatus unknown = report_of(1.0, 2'000'000, 2'000'000, 2'400'000);
+  unknown.angle_deg = std::nan("");
+  EXPECT_FALSE(axis.add(unknown));
+  EXPECT_FALSE(axis.add(report_of(1.0, 3'000'000, 2'000'000, 2'400'000)));  // a clock set back
+  EXPECT_EQ(axis.left_out(), 3U);
 }
 
 TEST(Sequencer, ARequestWhileBusyIsRefusedAndTheFirstGoesOn) {

@@ -26,7 +26,7 @@ class Program {
     process_ = ::fork();
     if (process_ == 0) {
       ::dup2(ends[1], STDOUT_FILENO);
-      ::execl(SWIVEL_BENCH, "swivel-bench", "--config", SWIVEL_CONFIG "/bench.yaml",
+      ::execl(SWIVEL_BENCH, "swivel-bench", "--config", SWIVEL_CONFIG "/benches/yuan.yaml",
               "--stepper-link", link.c_str(), nullptr);
       ::_exit(127);
     }

@@ -316,6 +316,40 @@ TEST(GrblPeer, OpeningItsPortResetsItAndStopsTheMotor) {
   EXPECT_THAT(grbl.send("?"), HasSubstr("MPos:0.000"));
 }
 
+double machine_position_deg(const std::string& report) {
+  return std::stod(report.substr(report.find("MPos:") + 5));
+}
+
+// A pan unit measures: what it says is where the shaft is, lost steps or not.
+TEST(GrblPeer, WithAnEncoderThePositionIsThatOfTheShaft) {
+  MotorOptions options;
+  options.home_sigma_deg = 3.0;
+  options.lose_every = 50;
+  options.lose_after_s = 6.0;
+  options.encoder = {true, 0.01, 0.5, 4.0};
+  Controller grbl(options);
+  grbl.unlock();
+  grbl.send("$H\n");
+  grbl.wait_idle();
+  const double home_deg = grbl.shaft_deg();
+  grbl.wait(3.0);
+  grbl.send("$J=G91 X90 F5400\n");
+  double largest_deg = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    grbl.send("?");
+    const double asked_deg = grbl.shaft_deg();
+    const std::string report = grbl.wait(0.005);
+    const double said_deg = home_deg + machine_position_deg(report) + 359.0;
+    EXPECT_GT(said_deg, asked_deg - 0.02);
+    EXPECT_LT(said_deg, grbl.shaft_deg() + 0.02);
+    largest_deg = std::max(largest_deg, said_deg - asked_deg);
+  }
+  EXPECT_GT(largest_deg, 0.1);  // of an instant after the question: 4 ms at 90 deg/s
+  grbl.wait_idle();
+  grbl.send("?");
+  EXPECT_NEAR(machine_position_deg(grbl.wait(0.005)), -359.0 + 90.0 * 49 / 50, 0.02);
+}
+
 TEST(GrblPeer, SurvivesAnyBytes) {
   Controller grbl;
   Random random(1);

@@ -59,6 +59,40 @@ TEST(Lidar, StandsOnItsLeverArm) {
   EXPECT_EQ(range(300, 900), 3918);  // (3400 - 6.95) / cos 30
 }
 
+LidarOptions mounted(const Vector3& xyz_mm, const Vector3& rpy_deg) {
+  LidarOptions lidar = exact_lidar();
+  lidar.mounting = {xyz_mm, rpy_deg};
+  return lidar;
+}
+
+int range(const LidarOptions& lidar, double phi_deg, int step) {
+  return standing_line(empty_room(), lidar, phi_deg).ranges_mm[static_cast<std::size_t>(step)];
+}
+
+TEST(Lidar, IsMountedAsItsPlacementSays) {
+  EXPECT_EQ(range(mounted({}, {10, 0, 0}), 0, 720), 2258);   // 1850 / cos 35: lifted
+  EXPECT_EQ(range(mounted({}, {0, 80, 0}), 0, 540), 3452);   // to the front: 3400 / sin 80
+  EXPECT_EQ(range(mounted({}, {0, 0, 60}), 0, 900), 3002);   // to the back: 2600 / sin 60
+  EXPECT_EQ(range(mounted({}, {90, 0, 90}), 0, 540), 3400);  // rolled first, then turned
+  EXPECT_EQ(range(mounted({100, 200, 300}, {}), 0, 900), 2200);
+  EXPECT_EQ(range(mounted({100, 200, 300}, {}), 90, 900), 2400);  // at (-200, 100)
+  EXPECT_EQ(range(mounted({100, 200, 300}, {}), 90, 540), 1550);
+}
+
+// The tilting rig of the recordings, as its driver has it: at tilt t the sensor stands at
+// (R sin t, 0, R cos t), R = 80 mm, and is turned by t about Y; beams of a level sensor leave
+// along (cos theta, sin theta, 0).
+TEST(Lidar, NodsAboutAnAxisThatLies) {
+  LidarOptions lidar = mounted({0, -80, 0}, {90, 0, 90});
+  lidar.axis.rpy_deg = {-90, 0, 0};
+  EXPECT_EQ(range(lidar, 0, 540), 3400);
+  EXPECT_EQ(range(lidar, 0, 900), 2400);
+  EXPECT_EQ(range(lidar, 15, 540), 3499);  // (3400 - 80 sin 15) / cos 15
+  EXPECT_EQ(range(lidar, 50, 540), 1307);  // to the floor: (950 + 80 cos 50) / sin 50
+  lidar.axis.xyz_mm = {100, 0, 20};
+  EXPECT_EQ(range(lidar, 50, 540), 1333);
+}
+
 TEST(Lidar, FiresEachBeamAtItsOwnInstant) {
   const World world(empty_room());
   std::vector<std::int64_t> times_ns;
@@ -88,7 +122,7 @@ TEST(Lidar, SkewAndYawOfTheRoom) {
 // The range on a level plate is depth / -cos theta at any azimuth (Yuan 2021, figure 6).
 std::vector<int> plate_steps(const WorldOptions& options, double phi_deg, int last_step) {
   LidarOptions lidar = exact_lidar();
-  lidar.last_step = last_step;
+  lidar.sensor.last_step = last_step;
   const LineReading line = standing_line(options, lidar, phi_deg);
   std::vector<int> steps;
   for (int step = 0; step <= last_step; ++step) {
@@ -182,15 +216,35 @@ TEST(Lidar, NoiseHasTheSizeAskedFor) {
 TEST(Lidar, SaysItsCodesForTooNearTooFarAndLost) {
   WorldOptions far = empty_room();
   far.room.left_mm = 30001.0;
-  EXPECT_EQ(standing_line(far, exact_lidar(), 0).ranges_mm[900], kNoReturn);
+  EXPECT_EQ(standing_line(far, exact_lidar(), 0).ranges_mm[900], SensorModel().no_return);
   LidarOptions near = exact_lidar();
   near.range_bias_mm = -2380.0;
-  EXPECT_EQ(standing_line(empty_room(), near, 0).ranges_mm[900], kTooNear);
+  EXPECT_EQ(standing_line(empty_room(), near, 0).ranges_mm[900], SensorModel().too_near);
   LidarOptions blind = exact_lidar();
   blind.dropout_rate = 1.0;
   const auto line = standing_line(empty_room(), blind, 0);
-  EXPECT_EQ(line.ranges_mm[900], kNoReturn);
+  EXPECT_EQ(line.ranges_mm[900], SensorModel().no_return);
   EXPECT_EQ(line.intensities[900], 0);
+}
+
+TEST(Lidar, FanAndLimitsAreThoseOfTheSensor) {
+  LidarOptions urg = exact_lidar();
+  urg.sensor = sensor_model("URG-04LX").value();
+  std::vector<std::int64_t> times_ns;
+  WorldOptions options = empty_room();
+  options.room.front_mm = 5700.0;
+  const World world(options);
+  const LineReading line = Lidar(urg, world, 1).cast_line({0, 1000, 1e5}, [&](std::int64_t time) {
+    times_ns.push_back(time);
+    return 90.0 * kRadPerDeg;
+  });
+  EXPECT_EQ(line.ranges_mm.size(), 682U);
+  EXPECT_EQ(line.intensities.size(), 682U);
+  EXPECT_EQ(times_ns.front(), 1000);  // of its first step, 44
+  EXPECT_EQ(times_ns.back(), 1000 + 68'100'000);
+  EXPECT_EQ(line.ranges_mm[384 - 44], 1850);  // straight up
+  EXPECT_EQ(line.ranges_mm[640 - 44], 2600);  // 90 deg
+  EXPECT_EQ(line.ranges_mm[128 - 44], 0);     // the front wall is beyond 5.6 m
 }
 
 TEST(Lidar, SquareSurfacesShineBrighterThanGrazedOnes) {

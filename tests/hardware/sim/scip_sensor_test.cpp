@@ -9,13 +9,15 @@
 namespace swivel::sim {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class Sensor {
  public:
+  explicit Sensor(const SensorModel& model = {}) : sensor(model, timing, 80'000'000) {}
   std::string ask(const std::string& request) { return sensor.receive(request + "\n", now_ns); }
   LidarTiming timing{LidarTimingOptions{}, 0, 1440, 1080, 1};
-  ScipSensor sensor{LidarOptions{}, timing, 80'000'000};
+  ScipSensor sensor;
   std::int64_t now_ns = 1'000'000'000;
 };
 
@@ -175,6 +177,35 @@ TEST(ScipSensor, RebootsWhenToldTwiceWithinASecond) {
   lidar.now_ns += 900'000'000;
   EXPECT_EQ(lidar.ask("RB"), "RB\n00P\n\n");
   EXPECT_TRUE(lidar.sensor.reboot_requested());
+}
+
+// As programs that read these sensors quote their answers.
+TEST(ScipSensor, SaysOfItselfWhatItsModelSays) {
+  Sensor utm(sensor_model("UTM-30LX").value());
+  EXPECT_THAT(utm.ask("PP"), AllOf(HasSubstr("MODL:UTM-30LX;"), HasSubstr("DMIN:23;7\n"),
+                                   HasSubstr("DMAX:60000;J\n"), HasSubstr("AMAX:1080;Z\n")));
+  EXPECT_THAT(utm.ask("VV"), HasSubstr("PROD:UTM-30LX;"));
+  EXPECT_THAT(utm.ask("II"), HasSubstr("SCSP:2400;"));
+  Sensor urg(sensor_model("URG-04LX").value());
+  EXPECT_THAT(urg.ask("PP"), AllOf(HasSubstr("ARES:1024;"), HasSubstr("AMIN:44;"),
+                                   HasSubstr("AMAX:725;"), HasSubstr("SCAN:600;")));
+  EXPECT_THAT(urg.ask("VV"), HasSubstr("PROT:SCIP 2.0;"));
+  EXPECT_FALSE(sensor_model("UST-10").has_value());
+}
+
+TEST(ScipSensor, OfAFanThatBeginsLaterSendsTheStepsAskedFor) {
+  Sensor urg(sensor_model("URG-04LX").value());
+  EXPECT_THAT(urg.ask("MD0000072501000"), HasSubstr("\n04"));
+  EXPECT_THAT(urg.ask("ME0044072501000"), HasSubstr("\n0E"));  // it has no intensities
+  EXPECT_THAT(urg.ask("MD0050072501001"), HasSubstr("\n00P"));
+  LineReading line = ramp();
+  line.ranges_mm.resize(682);
+  const auto frames = urg.sensor.deliver(line);
+  ASSERT_EQ(frames.size(), 1U);
+  const auto values = values_of(frames[0], 3);
+  EXPECT_EQ(values.size(), 676U);
+  EXPECT_EQ(values.front(), 1006U);  // step 50 is the seventh of the fan
+  EXPECT_EQ(values.back(), 1681U);
 }
 
 TEST(ScipSensor, TellsItsOperatingState) {

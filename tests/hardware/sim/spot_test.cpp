@@ -164,8 +164,8 @@ double plate_width_deg(const LidarOptions& lidar, double hypotenuse_mm) {
   options.plate.hypotenuse_mm = hypotenuse_mm;
   const World world(options);
   LidarOptions one_beam = lidar;
-  one_beam.front_step = 500;
-  one_beam.last_step = 0;
+  one_beam.sensor.front_step = 500;
+  one_beam.sensor.last_step = 0;
   const Lidar caster(one_beam, world, 1);
   int seen = 0;
   constexpr double kStepDeg = 0.05;

@@ -1,0 +1,53 @@
+// Which rays of a sweep meet which plane of the room, and what they say of mounting and planes.
+// docs/geometry.md (22), (23).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "calibration/half_scans.hpp"
+#include "calibration/mounting_equations.hpp"
+#include "calibration/planes.hpp"
+
+namespace swivel {
+
+// A plane in the frame in which the axis is at rest, and how far ranges to it scatter.
+struct SightedPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // n . p = -distance
+  double distance_m = 0.0;
+  double range_sigma_m = 0.0;
+  std::size_t rays = 0;
+};
+
+// One plane's part of the normal equations: mounting first, then two turns of the normal and the
+// distance.
+inline constexpr int kPlaneValues = 3;
+using PlaneVector = Eigen::Matrix<double, kMountingValues + kPlaneValues, 1>;
+using PlaneMatrix =
+    Eigen::Matrix<double, kMountingValues + kPlaneValues, kMountingValues + kPlaneValues>;
+
+struct PlaneSums {
+  PlaneMatrix information = PlaneMatrix::Zero();
+  PlaneVector gradient = PlaneVector::Zero();
+  double squares = 0.0;  // of residuals over sigma
+  std::size_t rays = 0;
+  std::vector<PlaneVector> by_sector;  // lines that are near in time err together
+};
+
+struct PlaneSightings {
+  std::vector<PlaneSums> planes;
+  RayMask explained;  // rays that stand on a plane, or where two could be meant
+};
+
+PlaneSightings sight_planes(const SweepReadings& readings, const MountedBeams& beams,
+                            const std::vector<SightedPlane>& planes);
+
+// The mounting's equations, with every plane free to move as its rays ask for.
+MountingEquations without_planes(const PlaneSightings& sightings);
+
+// The planes, moved as their rays ask for after the mounting has moved by that much.
+std::vector<SightedPlane> moved_planes(const std::vector<SightedPlane>& planes,
+                                       const PlaneSightings& sightings,
+                                       const MountingVector& mounting_moved);
+
+}  // namespace swivel

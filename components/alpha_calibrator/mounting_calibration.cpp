@@ -1,0 +1,91 @@
+#include "components/alpha_calibrator/mounting_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "components/common/calibration_file.hpp"
+#include "components/common/calibration_use.hpp"
+
+namespace swivel {
+namespace {
+
+// Where a value of the estimate stands in the message's covariance, and in which unit.
+struct MessagePlace {
+  MountingValue value;
+  CalibrationIndex index;
+  double per_unit;
+};
+constexpr std::array<MessagePlace, 4> kMessagePlaces{{{kMountingBias, kBias, deg_from_rad(1.0)},
+                                                      {kMountingTilt, kPitch, deg_from_rad(1.0)},
+                                                      {kMountingLeverX, kMountingX, 1e3},
+                                                      {kMountingLeverY, kMountingY, 1e3}}};
+
+std::string joint_in_words(const JointMounting& joint, std::size_t sweeps) {
+  std::string words = fmt::format(
+      "{} from {} sweep{}; planes {:.1f} mm thick; chi-square {:.1f} of {:.0f}; not seen: {}",
+      mounting_in_words(joint.fit), sweeps, sweeps == 1 ? "" : "s", mm_from_m(joint.fit.residual_m),
+      joint.scatter.sum, joint.scatter.freedom, fmt::join(joint.fit.unobservable, ", "));
+  if (!joint.fit.advice.empty()) words += "; " + joint.fit.advice;
+  return words;
+}
+
+}  // namespace
+
+std::string mounting_in_words(const MountingFit& fit) {
+  std::string words;
+  for (std::size_t name = 0; name < kMountingNames.size(); ++name) {
+    const MessagePlace& place = kMessagePlaces[name];
+    words += fmt::format("{}{} {:.4f} +- {:.4f} {}", words.empty() ? "" : ", ",
+                         kMountingNames[name], place.per_unit * fit.solution.value[place.value],
+                         place.per_unit * fit.sigma_of(place.value), name < 2 ? "deg" : "mm");
+  }
+  return words;
+}
+
+CalibrationAdded MountingCalibration::add(int mode, const MountingResult& result) {
+  if (!result.fit) return {false, result.reason};
+  fits_.push_back(*result.fit);
+  modes_.insert(mode);
+  return {true, mounting_in_words(*result.fit)};
+}
+
+CalibrationOutcome MountingCalibration::fit(const LidarName& lidar, std::int64_t time_ns) const {
+  if (fits_.empty()) return {std::nullopt, "no sweep shows the mounting"};
+  const JointMounting joint = join_mountings(fits_, rig_.geometry);
+  std::string words = joint_in_words(joint, fits_.size());
+  if (!joint.scatter.by_chance()) {
+    return {std::nullopt,
+            "the sweeps do not agree on one mounting: was the lidar or something in "
+            "the room moved meanwhile? " +
+                words};
+  }
+  if (rig_.plate) words += "; alpha was found with the old mounting: calibrate it again";
+  return {to_message(joint, lidar, time_ns), words};
+}
+
+msg::Calibration MountingCalibration::to_message(const JointMounting& joint, const LidarName& lidar,
+                                                 std::int64_t time_ns) const {
+  msg::Calibration calibration;
+  calibration.rig(rig_.rig);
+  calibration.time_ns(time_ns);
+  if (rig_.plate) calibration.alpha_deg(deg_from_rad(rig_.plate->alpha_rad));  // as drawn
+  set_mounting(joint.fit.geometry, calibration);
+  for (const MessagePlace& row : kMessagePlaces) {
+    for (const MessagePlace& column : kMessagePlaces) {
+      calibration.covariance()[row.index * kCalibrationSize + column.index] =
+          joint.fit.solution.covariance(row.value, column.value) * row.per_unit * column.per_unit;
+    }
+  }
+  calibration.chi_square(joint.scatter.sum);
+  calibration.degrees_of_freedom(static_cast<std::uint32_t>(std::max(0.0, joint.scatter.freedom)));
+  calibration.sweeps_used(static_cast<std::uint32_t>(fits_.size()));
+  calibration.mode(static_cast<std::uint8_t>(modes_.size() == 1 ? *modes_.begin() : 0));
+  calibration.serial_number(lidar.serial_number);
+  calibration.firmware(lidar.firmware);
+  calibration.provenance(joint_in_words(joint, fits_.size()));
+  return calibration;
+}
+
+}  // namespace swivel
