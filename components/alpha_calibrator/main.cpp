@@ -1,5 +1,6 @@
-// alpha_calibrator: on request asks for sweeps, finds the walls of the room in them and fits the
-// plate's mounting angle alpha. The calibration is published, and kept for the next start.
+// alpha_calibrator: on request asks for sweeps, and fits in them the plate's mounting angle alpha,
+// from the walls of the room, or how the lidar stands on the axis. The calibration is published,
+// and kept for the next start.
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
@@ -20,18 +21,20 @@ class CalibrationStore {
   CalibrationStore(Participant& participant, HealthReporter& health, std::string path)
       : writer_(participant, kCalibrationTopic), health_(health), path_(std::move(path)) {}
 
-  void publish_saved(const std::string& rig) {
+  // What was found before, if anything was. Before participant.start().
+  void load(Calibrator& calibrator) {
     if (!std::filesystem::exists(path_)) {
-      spdlog::info("no calibration yet in {}: alpha is taken as drawn", path_);
+      spdlog::info("no calibration yet in {}: the rig is taken as drawn", path_);
       return;
     }
-    msg::Calibration calibration = load_calibration(path_);
-    if (calibration.rig().to_string() != rig) {
-      throw ConfigurationError(path_ + ": is of rig '" + calibration.rig().to_string() +
-                               "', not of '" + rig + "'");
-    }
-    writer_.write(calibration);
-    spdlog::info("alpha {:.4f} deg, from {}", calibration.alpha_deg(), path_);
+    saved_ = load_calibration(path_);
+    const std::string wrong = calibrator.know(*saved_);
+    if (!wrong.empty()) throw ConfigurationError(path_ + ": " + wrong);
+    spdlog::info("the calibration of {} is in use: {}", path_, saved_->provenance());
+  }
+
+  void publish_saved() {
+    if (saved_) writer_.write(*saved_);
   }
 
   void publish(msg::Calibration calibration) {
@@ -44,6 +47,7 @@ class CalibrationStore {
   Writer<msg::Calibration> writer_;
   HealthReporter& health_;
   std::string path_;
+  std::optional<msg::Calibration> saved_;
 };
 
 LidarName lidar_name(const msg::Health& health) {
@@ -75,10 +79,14 @@ void calibrate(const CommonOptions& options, const std::string& calibration_path
             [&](const msg::Calibration& calibration) { store.publish(calibration); }});
 
   participant.subscribe<msg::Health>(kHealthTopic, [&](const auto& news) {
-    if (news.participant().to_string() == "hokuyo_reader") calibrator.name_lidar(lidar_name(news));
+    if (news.participant().to_string() != "hokuyo_reader") return;
+    const std::string wrong = calibrator.name_lidar(lidar_name(news));
+    if (!wrong.empty()) health.error("the calibration is not used: " + wrong);
   });
   const auto take = [&](const auto& message) { calibrator.take(message); };
   participant.subscribe<msg::CalibrationRequest>(kCalibrationRequestTopic, take);
+  participant.subscribe<msg::ScanLine>(kScanLineTopic, take);
+  participant.subscribe<msg::Axis>(kAxisTopic, take);
   participant.subscribe<msg::Sweep>(kSweepTopic, take);
   participant.subscribe<msg::Attitude>(kAttitudeTopic, take);
   participant.subscribe<PointCloud2>(kRawCloudTopic, take);
@@ -87,8 +95,9 @@ void calibrate(const CommonOptions& options, const std::string& calibration_path
     health.set_state(msg::HEALTH_OK,
                      calibrator.running() ? "calibrating" : "waiting for a request");
   });
+  store.load(calibrator);
   participant.start();
-  store.publish_saved(rig.rig);
+  store.publish_saved();
   stop.wait();
   participant.stop();
 }
@@ -97,7 +106,7 @@ void calibrate(const CommonOptions& options, const std::string& calibration_path
 
 int main(int argc, char** argv) {
   ParticipantProgram program(
-      "alpha_calibrator", "Calibrates the plate's mounting angle alpha from the walls of a room");
+      "alpha_calibrator", "Calibrates the plate's angle alpha, or the lidar's mounting, in a room");
   std::string calibration_path;
   program.add_option("--calibration", calibration_path, "Where the calibration is kept");
   return program.run(argc, argv, [&](const CommonOptions& options, StopSignal& stop) {

@@ -15,7 +15,7 @@ namespace swivel {
 class MeasuredAxis {
  public:
   // The longest time without a sample for the sake of better ones.
-  static constexpr std::int64_t kLongestGapNs = 100'000'000;
+  static constexpr std::int64_t kLongestGapNs = 200'000'000;
 
   std::optional<msg::AxisSample> add(const StepperStatus& report);
 

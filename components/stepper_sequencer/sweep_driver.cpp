@@ -58,6 +58,13 @@ LineWindow window_from(const SweepPlan& plan, std::int64_t start_ns) {
   return window;
 }
 
+// When the shaft is where the window opens, by one measured angle at full speed: however late the
+// motor started.
+std::int64_t opens_ns(const SweepPlan& plan, const StepperStatus& status) {
+  const std::int64_t middle_ns = status.asked_ns + (status.answered_ns - status.asked_ns) / 2;
+  return after(middle_ns, (plan.window_angle_deg - status.angle_deg) / plan.speed_deg_s);
+}
+
 }  // namespace
 
 SweepDriver::SweepDriver(GrblStepper& stepper, const SweepOptions& options, double poll_interval_s,
@@ -94,7 +101,7 @@ Outcome SweepDriver::sweep(const SweepPlan& plan) {
 Outcome SweepDriver::sweep_improved(const SweepPlan& plan) {
   const Result<Turn> turn = stepper_.move_to(plan.end_angle_deg, plan.speed_deg_s);
   if (!turn) return Failure{turn.reason()};
-  const LineWindow window = window_from(plan, after(turn->accepted_ns, plan.window_delay_s));
+  LineWindow window = window_from(plan, after(turn->accepted_ns, plan.window_delay_s));
   Outcome steady = confirm_window(plan, *turn, window);
   if (!steady) return steady;
   announcer_.window(window);
@@ -104,13 +111,15 @@ Outcome SweepDriver::sweep_improved(const SweepPlan& plan) {
   return arrive(*turn, plan.speed_deg_s);
 }
 
-Outcome SweepDriver::confirm_window(const SweepPlan& plan, const Turn& turn,
-                                    const LineWindow& window) {
+Outcome SweepDriver::confirm_window(const SweepPlan& plan, const Turn& turn, LineWindow& window) {
   const std::int64_t interval_ns = std::clamp<std::int64_t>(after(0, options_.settle_s / 4.0),
                                                             kArrivalPollNs, poll_interval_ns_);
   for (;;) {
     const Result<StepperStatus> status = look();
     if (!status) return Failure{status.reason()};
+    if (options_.axis_measured && is_steady(plan, *status)) {
+      window = window_from(plan, opens_ns(plan, *status));
+    }
     if (proves(plan, *status, window)) return Done{};
     const bool should_turn = status->asked_ns > turn.accepted_ns + kStartGraceNs;
     if (should_turn && status->state != GrblState::kJog)

@@ -29,7 +29,7 @@ class SweepDriver {
   Outcome sweep_naive(const SweepPlan& plan);
   Outcome sweep_stop_and_go(const SweepPlan& plan);
 
-  Outcome confirm_window(const SweepPlan& plan, const Turn& turn, const LineWindow& window);
+  Outcome confirm_window(const SweepPlan& plan, const Turn& turn, LineWindow& window);
   Outcome watch_window(const SweepPlan& plan, const LineWindow& window);
   Outcome arrive(const Turn& turn, double speed_deg_s);
   Outcome stand_for_line(const SweepPlan& plan, std::uint32_t line);

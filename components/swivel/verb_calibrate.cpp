@@ -1,5 +1,5 @@
 // swivel calibrate alpha: the plate's true azimuth, by a live rig or from a recording's sweeps.
-// swivel calibrate mounting: how the lidar stands on the axis, from a recording's sweeps.
+// swivel calibrate mounting: how the lidar stands on the axis, likewise.
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <filesystem>
@@ -64,7 +64,8 @@ int calibrate_alpha(const CalibrateOptions& options) {
   return kExitOk;
 }
 
-int calibrate_live(const CommonOptions& common, const CalibrateOptions& options, StopSignal& stop) {
+int calibrate_live(const CommonOptions& common, const msg::CalibrationRequest& request,
+                   StopSignal& stop) {
   start_log("swivel", "warning");
   const RigFile rig = load_rig_file(common.rig_file);
   Participant participant(common.participant("swivel_calibrate", rig.rig));
@@ -73,24 +74,43 @@ int calibrate_live(const CommonOptions& common, const CalibrateOptions& options,
   participant.start();
   const std::string missing = roll.await(participants_of("all"), std::chrono::seconds(30));
   if (!missing.empty()) throw ExitError(kExitUnavailable, missing + "; start them with: swivel up");
-  calibration.run(options.mode, options.count, options.room_yaw_deg.value_or(0.0), stop);
+  calibration.run(request, stop);
   return kExitOk;
 }
 
-void add_calibrate_mounting(CLI::App& calibrate, Verb& chosen) {
+void add_live_options(CLI::App& verb, CalibrateOptions& options) {
+  verb.add_option("--mode", options.mode, "Live: of the sweeps")->capture_default_str();
+  verb.add_option("--count", options.count, "Live: how many sweeps")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
+
+void add_calibrate_mounting(CLI::App& calibrate, StopSignal& stop, Verb& chosen) {
   CLI::App* const verb = calibrate.add_subcommand(
       "mounting", "How the lidar stands on the axis, and the bias of its centreline");
-  const auto options = std::make_shared<RecordedMountingOptions>();
-  verb->add_option("recording", options->recording, "A case folder, or a .csv.gz recording")
-      ->required();
-  verb->add_option("-o,--output", options->folder,
-                   "The folder for mounting.json and calibration.yaml")
-      ->required();
-  verb->add_flag("--per-sweep", options->per_sweep, "Each sweep alone, instead of all together");
-  verb->add_option("--rig", options->rig_file, "The rig file [that which suits the recording]");
-  verb->callback([options, &chosen] {
-    chosen = [options] {
-      calibrate_recorded_mounting(*options);
+  const auto common = std::make_shared<CommonOptions>();
+  const auto live = std::make_shared<CalibrateOptions>();
+  const auto recorded = std::make_shared<RecordedMountingOptions>();
+  live->mode = 2;
+  live->count = 2;
+  auto* const recording = verb->add_option("recording", recorded->recording,
+                                           "A case folder, or a .csv.gz recording; else live");
+  recording->needs(
+      verb->add_option("-o,--output", recorded->folder,
+                       "The folder for mounting.json and calibration.yaml, of a recording"));
+  verb->add_flag("--per-sweep", recorded->per_sweep, "Recorded: each sweep alone")
+      ->needs(recording);
+  add_live_options(*verb, *live);
+  add_common_options(*verb, *common);
+  verb->callback([=, &stop, &chosen] {
+    recorded->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    chosen = [=, &stop]() -> int {
+      if (recorded->recording.empty()) {
+        return calibrate_live(
+            *common, calibration_request(msg::CALIBRATION_OF_MOUNTING, live->mode, live->count),
+            stop);
+      }
+      calibrate_recorded_mounting(*recorded);
       return kExitOk;
     };
   });
@@ -111,10 +131,7 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
   recording->needs(
       verb->add_option("-o,--output", options->folder,
                        "The folder for calibration.yaml; live, alpha_calibrator has it"));
-  verb->add_option("--mode", options->mode, "Live: of the sweeps")->capture_default_str();
-  verb->add_option("--count", options->count, "Live: how many sweeps")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  add_live_options(*verb, *options);
   verb->add_option("--room-yaw-deg", options->room_yaw_deg,
                    "Azimuth of the room's front as the rig stands [as recorded, or 0]");
   verb->add_option("--sigma-deg", options->sigma_deg,
@@ -127,12 +144,14 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->capture_default_str()
       ->needs(recording);
   add_common_options(*verb, *common);
-  add_calibrate_mounting(*calibrate, chosen);
+  add_calibrate_mounting(*calibrate, stop, chosen);
   verb->callback([=, &stop, &chosen] {
     options->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
     chosen = [=, &stop] {
-      return options->recording.empty() ? calibrate_live(*common, *options, stop)
-                                        : calibrate_alpha(*options);
+      if (!options->recording.empty()) return calibrate_alpha(*options);
+      auto request = calibration_request(msg::CALIBRATION_OF_ALPHA, options->mode, options->count);
+      request.room_yaw_deg(options->room_yaw_deg.value_or(0.0));
+      return calibrate_live(*common, request, stop);
     };
   });
 }

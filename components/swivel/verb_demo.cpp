@@ -4,12 +4,14 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
+#include "components/common/calibration_file.hpp"
 #include "components/swivel/live/calibrate_live.hpp"
 #include "components/swivel/live/live_axis.hpp"
 #include "components/swivel/live/participants.hpp"
@@ -26,6 +28,10 @@ constexpr int kDemoDomain = 73;  // so that a demo does not meet a scanner at wo
 
 // A worse home switch than the bench's own: the skew is to be seen with the naked eye.
 constexpr const char* kHomeSigma_deg = "4";
+
+// A lidar that was not put on as drawn, on a rig that measures its axis.
+constexpr std::array<const char*, 6> kMountingOff{
+    "--bias-deg", "3", "--mounting-rpy-deg", "0,0.4,0", "--mounting-xyz-mm", "2,-3,0"};
 
 struct DemoOptions {
   std::string folder = "demo";
@@ -108,8 +114,32 @@ std::vector<std::string> bench_arguments(const RigFile& rig, const DemoOptions& 
   std::vector<std::string> arguments{
       "--rig",  std::filesystem::path(rig.path).stem(), "--truth",     truth_path,
       "--seed", std::to_string(options.seed),           "--log-level", "warning"};
-  if (!rig.axis_measured) arguments.insert(arguments.end(), {"--home-sigma-deg", kHomeSigma_deg});
+  if (rig.axis_measured) {
+    arguments.insert(arguments.end(), kMountingOff.begin(), kMountingOff.end());
+  } else {
+    arguments.insert(arguments.end(), {"--home-sigma-deg", kHomeSigma_deg});
+  }
   return arguments;
+}
+
+void calibrate_alpha(LiveCalibration& calibration, const DemoOptions& options, StopSignal& stop) {
+  std::cout << "alpha is calibrated from the walls ..." << std::endl;
+  calibration.run(calibration_request(msg::CALIBRATION_OF_ALPHA, options.calibration_mode,
+                                      options.calibration_sweeps),
+                  stop);
+}
+
+// What was found against what the bench was built with.
+void calibrate_mounting(LiveCalibration& calibration, const std::string& folder,
+                        OutputFolder& output, StopSignal& stop) {
+  std::cout << "the mounting is calibrated from the room ..." << std::endl;
+  calibration.run(calibration_request(msg::CALIBRATION_OF_MOUNTING, 1, 1), stop);
+  const msg::Calibration found = load_calibration(folder + "/calibration.yaml");
+  const TruthFile truth(folder + "/truth.csv");
+  const double true_bias_deg = truth.number("bias_deg").value_or(NAN);
+  std::cout << fmt::format("         truth: bias {:.4f} deg", true_bias_deg) << std::endl;
+  output.note("bias_deg", found.bias_deg());
+  output.note("true_bias_deg", true_bias_deg);
 }
 
 int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal& stop) {
@@ -135,10 +165,8 @@ int run_demo(const CommonOptions& common, const DemoOptions& options, StopSignal
   const std::string missing = roll.await(participants_of("all"), std::chrono::seconds(30));
   if (!missing.empty()) throw ExitError(kExitUnavailable, missing);
 
-  if (rig.plate) {
-    std::cout << "alpha is calibrated from the walls ..." << std::endl;
-    calibration.run(options.calibration_mode, options.calibration_sweeps, 0.0, stop);
-  }
+  if (rig.plate) calibrate_alpha(calibration, options, stop);
+  if (rig.axis_measured) calibrate_mounting(calibration, options.folder, output, stop);
   int good = 0;
   for (const int mode : modes) {
     std::cout << "scan in mode " << mode << " ..." << std::endl;

@@ -27,12 +27,16 @@ LiveCalibration::LiveCalibration(Participant& participant)
                                                   });
 }
 
-void LiveCalibration::run(int mode, int count, double room_yaw_deg, StopSignal& stop) {
+msg::CalibrationRequest calibration_request(msg::CalibrationKind kind, int mode, int count) {
   msg::CalibrationRequest request;
-  request.request_id(new_request_id());
+  request.kind(kind);
   request.mode(static_cast<std::uint8_t>(mode));
   request.count(static_cast<std::uint16_t>(count));
-  request.room_yaw_deg(room_yaw_deg);
+  return request;
+}
+
+void LiveCalibration::run(msg::CalibrationRequest request, StopSignal& stop) {
+  request.request_id(new_request_id());
   bool answered = false;
   auto last_news = steady_clock::now();
   while (!stop.received()) {

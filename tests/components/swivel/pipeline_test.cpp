@@ -53,6 +53,26 @@ TEST(Pipeline, ScansTheBenchWithinThePapersAccuracy) {
   }
 }
 
+// Zeng 2018, live: the bias that the bench's lidar was given is found, and the next sweep stands as
+// if there were none: its planes are as thin as the range noise, and where the room has them.
+TEST(Pipeline, CalibratesAndScansARigThatMeasuresItsAxis) {
+  const ScratchFolder scratch;
+  const std::string folder = scratch.file("demo");
+  const int code = run_swivel(scratch, "demo --rig zeng -o " + folder + " --domain " +
+                                           std::to_string(domain_of_this_test()));
+  ASSERT_EQ(code, 0) << content_of(scratch.file("out")) << content_of(scratch.file("err"));
+  const nlohmann::json report = report_in(folder);
+  EXPECT_NEAR(report["bias_deg"].get<double>(), report["true_bias_deg"].get<double>(), 0.01);
+  const auto& sweep = report["sweeps"].at(0);
+  EXPECT_EQ(sweep["verdict"], "measured");
+  EXPECT_TRUE(sweep["complete"]);
+  EXPECT_LT(sweep["axis_error_rms_deg"].get<double>(), 0.5);  // on a loaded machine
+  const auto& roof = sweep["largest_planes"].at(0);
+  EXPECT_NEAR(roof["distance_m"].get<double>(), 2.0, 0.003);
+  EXPECT_LT(roof["normal"][2].get<double>(), -0.99999);
+  EXPECT_LT(roof["thickness_sd_mm"].get<double>(), 11.0);
+}
+
 // Live and recorded are two sources of the same stages.
 TEST(Pipeline, ReplayedThroughTheParticipantsGivesWhatProcessGives) {
   const ScratchFolder scratch;
