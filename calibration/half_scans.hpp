@@ -1,6 +1,6 @@
 // A full turn sees every surface twice, with either half of the scan plane: in its first half and
 // in the half that follows. Where they differ the mounting is wrong (Alismail and Browning 2014;
-// Zeng 2018). docs/geometry.md (25).
+// Zeng 2018). docs/geometry.md (22).
 #pragma once
 
 #include <cstddef>

@@ -13,12 +13,15 @@ constexpr std::size_t kFewestLines = 8;
 constexpr std::size_t kFewestRays = 500;  // on planes
 constexpr std::size_t kMostPlanes = 12;
 constexpr double kLeastShareOfPlane = 0.01;  // of the sweep's points
-constexpr std::size_t kPlaneSearches = 3;    // the better the mounting, the flatter the planes
-constexpr int kMostSteps = 12;               // of each search
+constexpr double kBandOfRange = 0.03;        // a small scene has its planes near to one another
+constexpr double kThinnestBandM = 0.01;
+constexpr std::size_t kPlaneSearches = 3;  // the better the mounting, the flatter the planes
+constexpr int kMostSteps = 12;             // of each search
 constexpr double kOverlapCellM = 0.3;
-constexpr double kConverged = 1e-3;     // sigmas of a step
-constexpr double kSteepestTilt = 0.98;  // sine: the scan plane would be square to the axis
-constexpr double kNamedShare = 0.05;    // of a value's variance, that is the prior's
+constexpr double kConverged = 1e-3;      // sigmas of a step
+constexpr double kSteepestTilt = 0.98;   // sine: the scan plane would be square to the axis
+constexpr double kFurthestSigmas = 4.0;  // of the prior
+constexpr double kNamedShare = 0.05;     // of a value's variance, that is the prior's
 
 // As the assembler would put it, in the frame in which the axis is at rest.
 OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& beams) {
@@ -35,10 +38,25 @@ OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& be
   return cloud;
 }
 
+double median_range_m(const SweepReadings& readings) {
+  std::vector<float> ranges_m;
+  for (const LineOfReadings& line : readings.lines) {
+    std::copy_if(line.ranges_m.begin(), line.ranges_m.end(), std::back_inserter(ranges_m),
+                 [](float range_m) { return !std::isnan(range_m); });
+  }
+  if (ranges_m.empty()) return 0.0;
+  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
+  std::nth_element(ranges_m.begin(), middle, ranges_m.end());
+  return *middle;
+}
+
 std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
                                               const MountedBeams& beams) {
   PlaneOptions options;
   options.least_share = kLeastShareOfPlane;
+  options.band_m =
+      std::clamp(kBandOfRange * median_range_m(readings), kThinnestBandM, options.band_m);
+  options.shared_strip_m = 2.0 * options.band_m;
   std::vector<SightedPlane> planes;
   for (const Plane& plane : find_planes(cloud_under(readings, beams), kMostPlanes, options)) {
     planes.push_back({plane.normal, plane.distance_m, plane.rms_m, plane.points});
@@ -167,11 +185,21 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
     return {std::nullopt,
             in_words("only ", fit.rays, " rays meet a flat surface: sweep in a room")};
   }
+  fit.advice = advice_for(fit.solution, second_view(readings).has_value());
+  if (names_of_unseen(fit.solution).size() == kMountingNames.size() + 2)
+    return {std::nullopt, "the sweep shows nothing of the mounting: " + fit.advice};
+  const auto far = (fit.solution.value - prior.nominal).cwiseAbs().array() >
+                   kFurthestSigmas * prior.sigma.array();
+  if (far.any()) {
+    return {
+        std::nullopt,
+        "the fit ends far from the rig file: surfaces that are not flat, ranges that are off by "
+        "their size, or the file of another rig"};
+  }
   if (!fit.solution.value.allFinite() || !fit.solution.covariance.allFinite())
     return {std::nullopt, "the fit did not come to an end; is the rig file that of this rig?"};
   fit.geometry = with_mounting(nominal, fit.solution.value);
   fit.unobservable = names_of_unseen(fit.solution);
-  fit.advice = advice_for(fit.solution, second_view(readings).has_value());
   return {std::move(fit), {}};
 }
 

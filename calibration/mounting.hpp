@@ -1,5 +1,5 @@
 // How the lidar stands on the axis: the bias of its centreline, the tilt of the scan plane and the
-// lever arm, from sweeps of any rotating 2D lidar. docs/geometry.md (19) to (26); Zeng 2018.
+// lever arm, from sweeps of any rotating 2D lidar. docs/geometry.md (19) to (25); Zeng 2018.
 //
 // What it cannot see: a turn about the axis, a shift along it. The roll about the scan plane's
 // normal is one with the bias.

@@ -1,6 +1,7 @@
 #include "calibration/mounting_equations.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace swivel {
@@ -18,28 +19,38 @@ struct Split {
   Directions unseen;  // sigma * eigenvector
 };
 
-Split split_by_gain(const MountingMatrix& information, const MountingPrior& prior) {
+MountingMatrix scatter_of(const std::vector<MountingVector>& groups) {
+  MountingMatrix scatter = MountingMatrix::Zero();
+  for (const MountingVector& group : groups) scatter += group * group.transpose();
+  return scatter;
+}
+
+// scatter: what the gradient varies by; where that is more than the information, what errs together
+// makes the data worth less.
+Split split_by_gain(const MountingMatrix& information, const MountingMatrix& scatter,
+                    const MountingPrior& prior) {
   const auto scale = prior.sigma.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MountingMatrix> solver(scale * information * scale);
-  int unseen = 0;
-  while (unseen < kMountingValues && !(solver.eigenvalues()[unseen] > kLeastGain * kLeastGain))
-    ++unseen;
-  const Directions scaled = scale * solver.eigenvectors();
-  const auto seen_sigmas = solver.eigenvalues().tail(kMountingValues - unseen).cwiseSqrt();
-  return {
-      scaled.rightCols(kMountingValues - unseen) * seen_sigmas.cwiseInverse().eval().asDiagonal(),
-      scaled.leftCols(unseen)};
+  Split split{Directions(kMountingValues, 0), Directions(kMountingValues, 0)};
+  const auto append = [](Directions& to, const MountingVector& direction) {
+    to.conservativeResize(Eigen::NoChange, to.cols() + 1);
+    to.rightCols<1>() = direction;
+  };
+  for (int index = 0; index < kMountingValues; ++index) {
+    const MountingVector direction = scale * solver.eigenvectors().col(index);
+    const double worth = solver.eigenvalues()[index];
+    const double widening = std::max(1.0, direction.dot(scatter * direction) / worth);
+    const bool seen = worth > kLeastGain * kLeastGain * widening;
+    append(seen ? split.seen : split.unseen, seen ? direction / std::sqrt(worth) : direction);
+  }
+  return split;
 }
 
 // How much larger the errors are than independent noise makes them, in directions of unit
 // information: never less than 1.
-Eigen::MatrixXd widened(const std::vector<MountingVector>& groups, const Directions& seen) {
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(seen.cols(), seen.cols());
-  for (const MountingVector& group : groups) {
-    const Eigen::VectorXd pull = seen.transpose() * group;
-    scatter += pull * pull.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scatter);
+Eigen::MatrixXd widened(const MountingMatrix& scatter, const Directions& seen) {
+  if (seen.cols() == 0) return {};
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(seen.transpose() * scatter * seen);
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(1.0).asDiagonal() *
          solver.eigenvectors().transpose();
 }
@@ -77,8 +88,8 @@ MountingPrior prior_of(const RigGeometry& nominal) {
   prior.sigma[kMountingTilt] = rad_from_deg(2.0);
   prior.sigma[kMountingLeverX] = 0.03;
   prior.sigma[kMountingLeverY] = 0.03;
-  prior.sigma[kAxisHysteresis] = rad_from_deg(1.0);
-  prior.sigma[kRangeOffset] = 0.03;
+  prior.sigma[kAxisHysteresis] = rad_from_deg(0.5);
+  prior.sigma[kRangeOffset] = 0.02;
   return prior;
 }
 
@@ -90,10 +101,11 @@ void MountingEquations::add(const MountingEquations& more) {
 
 MountingSolution solve(const MountingEquations& equations, const MountingVector& value,
                        const MountingPrior& prior) {
-  const Split split = split_by_gain(equations.information, prior);
+  const MountingMatrix scatter = scatter_of(equations.groups);
+  const Split split = split_by_gain(equations.information, scatter, prior);
   const MountingVector pull = equations.information * (value - prior.nominal) - equations.gradient;
   const MountingVector found = prior.nominal + split.seen * (split.seen.transpose() * pull);
-  MountingSolution solution = solution_of(split, widened(equations.groups, split.seen), found);
+  MountingSolution solution = solution_of(split, widened(scatter, split.seen), found);
   solution.unseen = unseen_shares(split, prior);
   return solution;
 }
@@ -106,7 +118,7 @@ MountingSolution solve_together(const std::vector<MountingSolution>& sweeps,
     information += sweep.information;
     pull += sweep.information * (sweep.value - prior.nominal);
   }
-  const Split split = split_by_gain(information, prior);
+  const Split split = split_by_gain(information, information, prior);
   const Eigen::Index seen = split.seen.cols();
   MountingSolution solution =
       solution_of(split, Eigen::MatrixXd::Identity(seen, seen),

@@ -1,5 +1,5 @@
 // Least squares over a mounting of which the data show some directions and not others.
-// docs/geometry.md (23), (24).
+// docs/geometry.md (24), (25).
 #pragma once
 
 #include <vector>

@@ -17,6 +17,7 @@ constexpr std::size_t kSectors = 120;
 constexpr double kPriorTurnRad = 0.5;  // of a plane, so that no sum is singular
 constexpr double kPriorShiftM = 1.0;
 constexpr double kLeastSigmaM = 0.0003;  // ranges come in millimetres
+constexpr double kMostSigmaM = 0.05;     // what scatters more is no plane
 
 using Eigen::Vector3d;
 
@@ -33,7 +34,7 @@ PlaneAxes axes_of(const Vector3d& normal) {
 // Where a ray meets a plane.
 struct Meeting {
   double expected_m;  // as the lidar would say it
-  double cosine;      // of normal and ray: negative, since normals look at the rig
+  double cosine;      // of normal and ray
 };
 
 constexpr int kNoPlane = -1;
@@ -85,7 +86,7 @@ class LineSighter {
     for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
       const Meeting& meeting = meetings_[plane];
       const double off_m = range_m - meeting.expected_m;
-      if (!(meeting.cosine < -kLeastIncidence)) continue;
+      if (!(std::abs(meeting.cosine) > kLeastIncidence) || meeting.expected_m < 0.0) continue;
       if (std::abs(off_m) > kGateSigmas * sigma_m(planes_[plane], meeting.cosine)) continue;
       if (ray.plane != kNoPlane && std::abs(off_m) > std::abs(ray.off_m)) continue;
       ray = {static_cast<int>(plane), meeting, off_m};
@@ -244,7 +245,8 @@ std::vector<SightedPlane> moved_planes(const std::vector<SightedPlane>& planes,
     moved[plane].rays = sums.rays;
     if (sums.rays > 1) {
       const double scatter = std::sqrt(sums.squares / static_cast<double>(sums.rays));
-      moved[plane].range_sigma_m = std::max(kLeastSigmaM, scatter * planes[plane].range_sigma_m);
+      moved[plane].range_sigma_m =
+          std::clamp(scatter * planes[plane].range_sigma_m, kLeastSigmaM, kMostSigmaM);
     }
   }
   return moved;

@@ -1,5 +1,5 @@
 // Which rays of a sweep meet which plane of the room, and what they say of mounting and planes.
-// docs/geometry.md (22), (23).
+// docs/geometry.md (23).
 #pragma once
 
 #include <cstddef>

@@ -21,9 +21,8 @@ constexpr int kMostRansacRounds = 4000;
 constexpr std::size_t kRansacEffort = 8'000'000;  // points looked at for one plane: the fewer are
                                                   // left, the more rounds, and the small are found
 constexpr int kRefinements = 4;
-constexpr double kKeptSigmas = 3.0;    // of the points that a plane is fitted to
-constexpr double kSharedStripM = 0.1;  // about another plane, where points could be either's
-constexpr double kThickest = 0.9;      // rms over band: evenly filled space has more
+constexpr double kKeptSigmas = 3.0;  // of the points that a plane is fitted to
+constexpr double kThickest = 0.9;    // rms over band: evenly filled space has more
 constexpr std::size_t kLeastPointsOfAPlane = 50;
 constexpr std::size_t kOtherPlanes = 6;  // floor, roof, tables: looked for besides the walls
 
@@ -105,21 +104,22 @@ struct Moments {
 
 // Told by where the point's ray meets its own plane: by the noisy point itself, more of the noise
 // towards the other plane than away from it would go, and turn the fit.
-bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen::Vector3f& point) {
+bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen::Vector3f& point,
+                  double strip_m) {
   const double along_ray = -planes[own].distance_m / planes[own].normal.dot(point.cast<double>());
   const Eigen::Vector3f foot = static_cast<float>(along_ray) * point;
   for (std::size_t other = 0; other < planes.size(); ++other) {
-    if (other != own && std::abs(height_over(planes[other], foot)) < kSharedStripM) return true;
+    if (other != own && std::abs(height_over(planes[other], foot)) < strip_m) return true;
   }
   return false;
 }
 
 Moments moments_near(const Points& points, const std::vector<Plane>& planes, std::size_t own,
-                     double band_m) {
+                     double band_m, double strip_m) {
   Moments moments;
   for (const Eigen::Vector3f& point : points) {
     if (std::abs(height_over(planes[own], point)) > band_m) continue;
-    if (!near_another(planes, own, point)) moments.add(point.cast<double>());
+    if (!near_another(planes, own, point, strip_m)) moments.add(point.cast<double>());
   }
   return moments;
 }
@@ -146,7 +146,7 @@ std::optional<Plane> refine(const Points& points, std::vector<Plane> planes, std
                             const PlaneOptions& options) {
   double band_m = options.band_m;
   for (int round = 0; round < kRefinements; ++round) {
-    const auto better = fit(moments_near(points, planes, own, band_m));
+    const auto better = fit(moments_near(points, planes, own, band_m, options.shared_strip_m));
     if (!better) return std::nullopt;
     planes[own] = *better;
     band_m = std::clamp(kKeptSigmas * better->rms_m, 0.2 * options.band_m, 2.0 * options.band_m);

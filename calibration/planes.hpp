@@ -28,6 +28,7 @@ struct Plane {
 
 struct PlaneOptions {
   double band_m = 0.05;                       // half the thickness in which a plane is looked for
+  double shared_strip_m = 0.1;                // about another plane, whose points could be either's
   double least_share = 0.02;                  // of the cloud's points; what has less is no plane
   std::size_t sampled = 15'000;               // points in which planes are looked for
   double wall_tilt_rad = rad_from_deg(10.0);  // how far a wall may lean

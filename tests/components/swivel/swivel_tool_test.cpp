@@ -243,12 +243,48 @@ TEST(Refusals, EndWithTheirCodeAndOneLineThatSaysWhatToDo) {
            {"view --listen 0.0.0.0 --port 0 --token-file /nowhere/token", 73, "/nowhere/token"},
            {"view --listen 203.0.113.1 --token 0123456789abcdef", 69, "--port"},
            {"calibrate alpha " + recording("pan_sparse") + out, 78, "plate"},
-           {"calibrate alpha " + recording("plate_period") + out, 65, "sweeps"}}) {
+           {"calibrate alpha " + recording("plate_period") + out, 65, "sweeps"},
+           {"calibrate mounting /nowhere" + out, 66, "/nowhere"},
+           {"calibrate mounting " + recording("corridor.csv.gz") + out, 65, "no axis angle"}}) {
     const Ended ended = run(scratch, refusal.arguments);
     EXPECT_EQ(ended.code, refusal.code) << refusal.arguments;
     EXPECT_THAT(ended.err, HasSubstr(refusal.words));
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
   }
+}
+
+TEST(CalibrateMounting, OfARecordingIsTheTruthAndMakesItsCloudsFlat) {
+  const ScratchFolder scratch;
+  const std::string out = scratch.file("mounting");
+  const Ended ended =
+      run(scratch, "calibrate mounting " + recording("pan_sparse") + " --per-sweep -o " + out);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto sweeps = nlohmann::json::parse(content_of(out + "/mounting.json"))["sweeps"];
+  auto truth = truth_of("pan_sparse");
+  ASSERT_EQ(sweeps.size(), 1U);
+  const auto& sweep = sweeps[0];
+  EXPECT_EQ(sweep["sweep"], 0);
+  EXPECT_NEAR(sweep["bias_deg"], -truth["sweep0_obs_rx_deg"], 0.005);
+  EXPECT_NEAR(sweep["ry_deg"], truth["sweep0_obs_ry_deg"],
+              4.0 * sweep["ry_sigma_deg"].get<double>());
+  EXPECT_NEAR(sweep["tx_mm"], truth["sweep0_obs_tx_mm"], 4.0 * sweep["tx_sigma_mm"].get<double>());
+  EXPECT_NEAR(sweep["ty_mm"], truth["sweep0_obs_ty_mm"], 4.0 * sweep["ty_sigma_mm"].get<double>());
+  EXPECT_EQ(sweep["unobservable"], nlohmann::json({"rz", "tz"}));
+
+  const auto thickness_mm = [&](const std::string& options) {
+    const std::string process = "process " + recording("pan_sparse") + " --no-clouds --no-pictures";
+    EXPECT_EQ(run(scratch, process + " -o " + scratch.file("clouds") + options).code, 0);
+    const auto report = nlohmann::json::parse(content_of(scratch.file("clouds/report.json")));
+    return report["sweeps"][0]["largest_planes"][0]["thickness_sd_mm"].get<double>();
+  };
+  const std::string calibration = " --calibration " + out + "/calibration.yaml";
+  EXPECT_LT(thickness_mm(calibration), 10.0) << "the noise";
+  EXPECT_GT(thickness_mm(""), 12.0) << "a bias of 4 deg bends walls and roof";
+
+  const Ended refused = run(scratch, "process " + recording("plate_period") + calibration + " -o " +
+                                         scratch.file("other"));
+  EXPECT_EQ(refused.code, 65);
+  EXPECT_THAT(refused.err, HasSubstr("zeng")) << "a calibration of another rig";
 }
 
 TEST(Refusals, WrongUsageIs64) {
