@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMisfitSigmas = 5.0;  // of one wall in one sweep: it was something else
 constexpr double kLeastMisfitRad = rad_from_deg(0.05);
-constexpr double kLeastSigmaRad = 1e-6;   // what claims less still has rounding
+constexpr double kLeastSigmaRad = 1e-6;  // what claims less still has rounding
 
 // What a sweep's walls are off together: its beta's error.
 struct Common {

@@ -85,10 +85,10 @@ void put_values(Json& json, const MountingFit& fit) {
   put(json, "ry", "deg", fit, kMountingTilt, deg_from_rad(1.0));
   put(json, "tx", "mm", fit, kMountingLeverX, mm_from_m(1.0));
   put(json, "ty", "mm", fit, kMountingLeverY, mm_from_m(1.0));
-  const auto seen = [&](MountingValue value) { return fit.solution.unseen[value] < 0.5; };
-  if (seen(kAxisHysteresis))
+  if (is_seen(fit.solution, kAxisHysteresis))
     put(json, "hysteresis", "deg", fit, kAxisHysteresis, deg_from_rad(1.0));
-  if (seen(kRangeOffset)) put(json, "range_offset", "mm", fit, kRangeOffset, mm_from_m(1.0));
+  if (is_seen(fit.solution, kRangeOffset))
+    put(json, "range_offset", "mm", fit, kRangeOffset, mm_from_m(1.0));
 }
 
 Json steps_of(const MountingFit& fit) {
