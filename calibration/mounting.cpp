@@ -15,6 +15,7 @@ constexpr std::size_t kMostPlanes = 12;
 constexpr double kLeastShareOfPlane = 0.01;  // of the sweep's points
 constexpr double kBandOfRange = 0.03;        // a small scene has its planes near to one another
 constexpr double kThinnestBandM = 0.01;
+constexpr std::size_t kLargestPlanes = 3;
 constexpr std::size_t kPlaneSearches = 3;  // the better the mounting, the flatter the planes
 constexpr int kMostSteps = 12;             // of each search
 constexpr double kConverged = 1e-3;        // sigmas of a step
@@ -37,18 +38,32 @@ OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& be
   return cloud;
 }
 
-std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
-                                              const MountedBeams& beams) {
+PlaneOptions plane_options(const SweepReadings& readings) {
   PlaneOptions options;
   options.least_share = kLeastShareOfPlane;
   options.band_m =
       std::clamp(kBandOfRange * median_range_m(readings), kThinnestBandM, options.band_m);
   options.shared_strip_m = 2.0 * options.band_m;
+  return options;
+}
+
+std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
+                                              const MountedBeams& beams) {
+  const PlaneOptions options = plane_options(readings);
   std::vector<SightedPlane> planes;
   for (const Plane& plane : find_planes(cloud_under(readings, beams), kMostPlanes, options)) {
     planes.push_back({plane.normal, plane.distance_m, plane.rms_m, plane.points});
   }
   return planes;
+}
+
+double thickness_under_m(const SweepReadings& readings, const RigGeometry& nominal,
+                         const MountingVector& mounting) {
+  const auto planes = find_planes(cloud_under(readings, {nominal, mounting, readings}),
+                                  kLargestPlanes, plane_options(readings));
+  double squares = 0.0;
+  for (const Plane& plane : planes) squares += plane.rms_m * plane.rms_m;
+  return planes.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(planes.size()));
 }
 
 // Both at once: the planes of the room, and what both views see where there is no plane.
@@ -209,6 +224,8 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
   if (!fit.solution.value.allFinite() || !fit.solution.covariance.allFinite())
     return {std::nullopt, "the fit did not come to an end; is the rig file that of this rig?"};
   fit.geometry = with_mounting(nominal, fit.solution.value);
+  fit.nominal_thickness_m = thickness_under_m(readings, nominal, prior.nominal);
+  fit.thickness_m = thickness_under_m(readings, nominal, fit.solution.value);
   return {std::move(fit), {}};
 }
 

@@ -34,6 +34,8 @@ struct MountingFit {
   std::size_t cells = 0;                  // that both views see, where there is no plane
   double residual_m = 0.0;                // rms of ranges about the planes
   std::vector<SightedPlane> planes;       // of one sweep alone
+  double nominal_thickness_m = 0.0;       // of the three largest planes, likewise, rms: as the rig
+  double thickness_m = 0.0;               // file has the mounting, and as it was estimated
   SymmetricRaysFit symmetric_rays;        // the steps of Zeng 2018, likewise
   std::optional<HalfScansFit> half_scans;
 

@@ -119,6 +119,10 @@ Json to_json(const std::vector<std::size_t>& sweeps, const MountingFit& fit) {
   json["unobservable"] = fit.unobservable;
   json["advice"] = fit.advice;
   json["residual_mm"] = mm_from_m(fit.residual_m);
+  if (fit.thickness_m > 0.0) {
+    json["largest_planes_nominal_mm"] = mm_from_m(fit.nominal_thickness_m);
+    json["largest_planes_mm"] = mm_from_m(fit.thickness_m);
+  }
   json["rays_on_planes"] = fit.rays;
   json["cells_seen_twice"] = fit.cells;
   if (fit.symmetric_rays.attempts > 0 || fit.half_scans) json["steps"] = steps_of(fit);
