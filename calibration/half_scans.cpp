@@ -14,12 +14,14 @@ constexpr std::size_t kFewestRaysOfAView = 8;
 constexpr double kFurthestM = 12.0;       // beyond, rays are too far apart to fill a cell
 constexpr double kThickestOfCell = 0.15;  // rms over the cell's size
 constexpr double kNarrowestOfCell = 0.08;
-constexpr double kFloorM = 0.002;  // no mean of a cell is known better: surfaces are not flat
+constexpr double kFloorM = 0.0005;  // no mean of a cell is known better
 constexpr double kRobustSigmas = 2.0;
 constexpr double kLeastIncidence = 0.3;
-constexpr std::size_t kRaysCompared = 60'000;  // are enough to come near
-constexpr std::size_t kFewestCells = 30;
-constexpr std::array<double, 9> kCellSizesM = {0.8, 0.8, 0.8, 0.6, 0.6, 0.4, 0.4, 0.3, 0.3};
+constexpr std::size_t kRaysCompared = 100'000;  // are enough to come near
+constexpr std::size_t kFewestCells = 12;
+// Of a cell, over the median range: from coarse to fine.
+constexpr std::array<double, 9> kCellShares = {0.35, 0.35, 0.35, 0.26, 0.26,
+                                               0.17, 0.17, 0.13, 0.13};
 
 using CellKey = std::int64_t;
 
@@ -194,6 +196,10 @@ HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vecto
   return compared;
 }
 
+double finest_cell_m(const SweepReadings& readings) {
+  return kCellShares.back() * median_range_m(readings);
+}
+
 std::optional<HalfScansFit> fit_half_scans(const SweepReadings& readings,
                                            const RigGeometry& nominal, const MountingPrior& prior,
                                            const MountingVector& start) {
@@ -202,9 +208,10 @@ std::optional<HalfScansFit> fit_half_scans(const SweepReadings& readings,
   const SweepReadings thin = thinned(readings);
   HalfScansFit fit;
   fit.solution.value = start;
-  for (const double cell_m : kCellSizesM) {
+  const double scale_m = median_range_m(thin);
+  for (const double share : kCellShares) {
     const MountedBeams beams(nominal, fit.solution.value, thin);
-    const HalfScanCells compared = compare_half_scans(thin, *second, {}, beams, cell_m);
+    const HalfScanCells compared = compare_half_scans(thin, *second, {}, beams, share * scale_m);
     if (compared.cells < kFewestCells) return std::nullopt;
     fit.cells = compared.cells;
     fit.residual_m = compared.residual_m;

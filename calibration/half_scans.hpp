@@ -29,6 +29,9 @@ struct HalfScanCells {
 HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vector<bool>& second,
                                  const RayMask& left_out, const MountedBeams& beams, double cell_m);
 
+// In which two views are compared at last: a small scene has small cells.
+double finest_cell_m(const SweepReadings& readings);
+
 struct HalfScansFit {
   MountingSolution solution;
   std::size_t cells = 0;

@@ -15,13 +15,13 @@ constexpr std::size_t kMostPlanes = 12;
 constexpr double kLeastShareOfPlane = 0.01;  // of the sweep's points
 constexpr double kBandOfRange = 0.03;        // a small scene has its planes near to one another
 constexpr double kThinnestBandM = 0.01;
+constexpr std::size_t kLargestPlanes = 3;
 constexpr std::size_t kPlaneSearches = 3;  // the better the mounting, the flatter the planes
 constexpr int kMostSteps = 12;             // of each search
-constexpr double kOverlapCellM = 0.3;
-constexpr double kConverged = 1e-3;      // sigmas of a step
-constexpr double kSteepestTilt = 0.98;   // sine: the scan plane would be square to the axis
-constexpr double kFurthestSigmas = 4.0;  // of the prior
-constexpr double kNamedShare = 0.05;     // of a value's variance, that is the prior's
+constexpr double kConverged = 1e-3;        // sigmas of a step
+constexpr double kSteepestTilt = 0.98;     // sine: the scan plane would be square to the axis
+constexpr double kFurthestSigmas = 4.0;    // of the prior
+constexpr double kNamedShare = 0.05;       // of a value's variance, that is the prior's
 
 // As the assembler would put it, in the frame in which the axis is at rest.
 OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& beams) {
@@ -38,30 +38,32 @@ OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& be
   return cloud;
 }
 
-double median_range_m(const SweepReadings& readings) {
-  std::vector<float> ranges_m;
-  for (const LineOfReadings& line : readings.lines) {
-    std::copy_if(line.ranges_m.begin(), line.ranges_m.end(), std::back_inserter(ranges_m),
-                 [](float range_m) { return !std::isnan(range_m); });
-  }
-  if (ranges_m.empty()) return 0.0;
-  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
-  std::nth_element(ranges_m.begin(), middle, ranges_m.end());
-  return *middle;
-}
-
-std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
-                                              const MountedBeams& beams) {
+PlaneOptions plane_options(const SweepReadings& readings) {
   PlaneOptions options;
   options.least_share = kLeastShareOfPlane;
   options.band_m =
       std::clamp(kBandOfRange * median_range_m(readings), kThinnestBandM, options.band_m);
   options.shared_strip_m = 2.0 * options.band_m;
+  return options;
+}
+
+std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
+                                              const MountedBeams& beams) {
+  const PlaneOptions options = plane_options(readings);
   std::vector<SightedPlane> planes;
   for (const Plane& plane : find_planes(cloud_under(readings, beams), kMostPlanes, options)) {
     planes.push_back({plane.normal, plane.distance_m, plane.rms_m, plane.points});
   }
   return planes;
+}
+
+double thickness_under_m(const SweepReadings& readings, const RigGeometry& nominal,
+                         const MountingVector& mounting) {
+  const auto planes = find_planes(cloud_under(readings, {nominal, mounting, readings}),
+                                  kLargestPlanes, plane_options(readings));
+  double squares = 0.0;
+  for (const Plane& plane : planes) squares += plane.rms_m * plane.rms_m;
+  return planes.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(planes.size()));
 }
 
 // Both at once: the planes of the room, and what both views see where there is no plane.
@@ -103,8 +105,8 @@ class JointFit {
     const PlaneSightings sightings = sight_planes(readings_, beams(), planes_);
     MountingEquations equations = without_planes(sightings);
     if (second_) {
-      const HalfScanCells overlap =
-          compare_half_scans(readings_, *second_, sightings.explained, beams(), kOverlapCellM);
+      const HalfScanCells overlap = compare_half_scans(readings_, *second_, sightings.explained,
+                                                       beams(), finest_cell_m(readings_));
       equations.add(overlap.equations);
       cells_ = overlap.cells;
     }
@@ -127,7 +129,7 @@ class JointFit {
 std::vector<std::string> names_of_unseen(const MountingSolution& solution) {
   std::vector<std::string> names;
   for (std::size_t value = 0; value < kMountingNames.size(); ++value) {
-    if (solution.unseen[static_cast<int>(value)] > kNamedShare)
+    if (!is_seen(solution, static_cast<MountingValue>(value)))
       names.emplace_back(kMountingNames[value]);
   }
   names.insert(names.end(), {"rz", "tz"});
@@ -135,7 +137,7 @@ std::vector<std::string> names_of_unseen(const MountingSolution& solution) {
 }
 
 std::string advice_for(const MountingSolution& solution, bool full_turn) {
-  const auto unseen = [&](MountingValue value) { return solution.unseen[value] > kNamedShare; };
+  const auto unseen = [&](MountingValue value) { return !is_seen(solution, value); };
   std::string advice;
   if (unseen(kMountingTilt) || unseen(kMountingLeverX) || unseen(kMountingLeverY)) {
     advice =
@@ -147,6 +149,20 @@ std::string advice_for(const MountingSolution& solution, bool full_turn) {
   }
   if (!advice.empty() && !full_turn) advice += "; a full turn shows more than a part of one";
   return advice;
+}
+
+// The axis alone, the mounting as the rig file has it: what sweeps up and down show wherever they
+// see the same.
+bool take_hysteresis(const SweepReadings& readings, const RigGeometry& nominal, MountingFit& fit) {
+  const MountingPrior whole = prior_of(nominal);
+  MountingPrior prior{whole.nominal, MountingVector::Zero()};
+  prior.sigma[kAxisHysteresis] = whole.sigma[kAxisHysteresis];
+  fit.half_scans = fit_half_scans(readings, nominal, prior, prior.nominal);
+  if (!fit.half_scans || fit.half_scans->solution.seen_directions == 0) return false;
+  fit.solution = fit.half_scans->solution;
+  fit.solution.covariance.diagonal() +=
+      (whole.sigma - prior.sigma).cwiseAbs2();  // of what was not asked
+  return true;
 }
 
 MountingVector start_of(const MountingFit& fit, const MountingPrior& prior) {
@@ -169,6 +185,14 @@ std::string why_unusable(const SweepReadings& readings, const RigGeometry& nomin
 
 }  // namespace
 
+bool is_seen(const MountingSolution& solution, MountingValue value) {
+  return solution.unseen[value] <= kNamedShare;
+}
+
+bool shows_mounting(const MountingFit& fit) {
+  return fit.unobservable.size() < kMountingNames.size() + 2;
+}
+
 MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& nominal) {
   if (std::string reason = why_unusable(readings, nominal); !reason.empty())
     return {std::nullopt, std::move(reason)};
@@ -186,7 +210,8 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
             in_words("only ", fit.rays, " rays meet a flat surface: sweep in a room")};
   }
   fit.advice = advice_for(fit.solution, second_view(readings).has_value());
-  if (names_of_unseen(fit.solution).size() == kMountingNames.size() + 2)
+  fit.unobservable = names_of_unseen(fit.solution);
+  if (!shows_mounting(fit) && !take_hysteresis(readings, nominal, fit))
     return {std::nullopt, "the sweep shows nothing of the mounting: " + fit.advice};
   const auto far = (fit.solution.value - prior.nominal).cwiseAbs().array() >
                    kFurthestSigmas * prior.sigma.array();
@@ -199,7 +224,8 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
   if (!fit.solution.value.allFinite() || !fit.solution.covariance.allFinite())
     return {std::nullopt, "the fit did not come to an end; is the rig file that of this rig?"};
   fit.geometry = with_mounting(nominal, fit.solution.value);
-  fit.unobservable = names_of_unseen(fit.solution);
+  fit.nominal_thickness_m = thickness_under_m(readings, nominal, prior.nominal);
+  fit.thickness_m = thickness_under_m(readings, nominal, fit.solution.value);
   return {std::move(fit), {}};
 }
 

@@ -22,6 +22,9 @@ namespace swivel {
 // Of the values of a mounting, as users know them.
 inline constexpr std::array<const char*, 4> kMountingNames = {"bias", "ry", "tx", "ty"};
 
+// All but a twentieth of the value's variance is what the data leave.
+bool is_seen(const MountingSolution& solution, MountingValue value);
+
 struct MountingFit {
   RigGeometry geometry;                   // the nominal with what was estimated in it
   MountingSolution solution;              // with covariance; the nominal where nothing is seen
@@ -31,6 +34,8 @@ struct MountingFit {
   std::size_t cells = 0;                  // that both views see, where there is no plane
   double residual_m = 0.0;                // rms of ranges about the planes
   std::vector<SightedPlane> planes;       // of one sweep alone
+  double nominal_thickness_m = 0.0;       // of the three largest planes, likewise, rms: as the rig
+  double thickness_m = 0.0;               // file has the mounting, and as it was estimated
   SymmetricRaysFit symmetric_rays;        // the steps of Zeng 2018, likewise
   std::optional<HalfScansFit> half_scans;
 
@@ -43,6 +48,9 @@ struct MountingResult {
   std::optional<MountingFit> fit;  // none: refused
   std::string reason;              // then in words what to do; else empty
 };
+
+// At least one of bias, ry, tx, ty is seen; else only the hysteresis of the axis.
+bool shows_mounting(const MountingFit& fit);
 
 // From what was seen at one place: a sweep, or a sweep up and one down, one after the other.
 MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& nominal);

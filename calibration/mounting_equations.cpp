@@ -19,9 +19,13 @@ struct Split {
   Directions unseen;  // sigma * eigenvector
 };
 
-MountingMatrix scatter_of(const std::vector<MountingVector>& groups) {
+// About their mean, which is none once the fit is at its end: before, all pull one way, and that is
+// no scatter.
+MountingMatrix scatter_of(const MountingEquations& equations) {
+  const auto count = static_cast<double>(equations.groups.size());
   MountingMatrix scatter = MountingMatrix::Zero();
-  for (const MountingVector& group : groups) scatter += group * group.transpose();
+  for (const MountingVector& group : equations.groups) scatter += group * group.transpose();
+  if (count > 0.0) scatter -= equations.gradient * equations.gradient.transpose() / count;
   return scatter;
 }
 
@@ -88,7 +92,7 @@ MountingPrior prior_of(const RigGeometry& nominal) {
   prior.sigma[kMountingTilt] = rad_from_deg(2.0);
   prior.sigma[kMountingLeverX] = 0.03;
   prior.sigma[kMountingLeverY] = 0.03;
-  prior.sigma[kAxisHysteresis] = rad_from_deg(0.5);
+  prior.sigma[kAxisHysteresis] = rad_from_deg(1.0);
   prior.sigma[kRangeOffset] = 0.02;
   return prior;
 }
@@ -101,7 +105,7 @@ void MountingEquations::add(const MountingEquations& more) {
 
 MountingSolution solve(const MountingEquations& equations, const MountingVector& value,
                        const MountingPrior& prior) {
-  const MountingMatrix scatter = scatter_of(equations.groups);
+  const MountingMatrix scatter = scatter_of(equations);
   const Split split = split_by_gain(equations.information, scatter, prior);
   const MountingVector pull = equations.information * (value - prior.nominal) - equations.gradient;
   const MountingVector found = prior.nominal + split.seen * (split.seen.transpose() * pull);

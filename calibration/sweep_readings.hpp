@@ -22,4 +22,7 @@ struct SweepReadings {
   std::size_t beams() const { return lines.empty() ? 0 : lines.front().ranges_m.size(); }
 };
 
+// How far away things are; 0 without any range.
+double median_range_m(const SweepReadings& readings);
+
 }  // namespace swivel

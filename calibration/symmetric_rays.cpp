@@ -24,6 +24,7 @@ constexpr double kKeptHeightScatters = 3.5;
 constexpr int kSelections = 6;
 constexpr double kAgreedRad = rad_from_deg(0.01);
 constexpr double kAgreedSigmas = 3.0;
+constexpr double kMostAgreedRad = rad_from_deg(0.05);  // lines that scatter by more do not agree
 
 // Two rays of one line, at angles from the axis that are opposite to within a beam step.
 struct RayPair {
@@ -254,8 +255,9 @@ SymmetricRaysFit fit_symmetric_rays(const SweepReadings& readings, const RigGeom
     fit.pairs = half.used.size();
     fit.second_half_off_rad = off_rad(second, half.unknowns);
     ++fit.attempts;
-    fit.verified = std::abs(fit.second_half_off_rad) <
-                   std::max(kAgreedRad, kAgreedSigmas * std::sqrt(2.0) * fit.sigma_rad);
+    const double chance_rad = kAgreedSigmas * std::sqrt(2.0) * fit.sigma_rad;
+    fit.verified =
+        std::abs(fit.second_half_off_rad) < std::clamp(chance_rad, kAgreedRad, kMostAgreedRad);
     if (fit.verified) return fit;
   }
   fit.reason = in_words("the second half of the sweep differs by ",

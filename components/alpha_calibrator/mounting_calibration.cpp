@@ -34,14 +34,20 @@ std::string joint_in_words(const JointMounting& joint, std::size_t sweeps) {
 }  // namespace
 
 std::string mounting_in_words(const MountingFit& fit) {
-  std::string words;
+  std::vector<std::string> words;
+  const auto say = [&](const char* name, MountingValue value, double per_unit, const char* unit) {
+    words.push_back(fmt::format("{} {:.4f} +- {:.4f} {}", name,
+                                per_unit * fit.solution.value[value],
+                                per_unit * fit.sigma_of(value), unit));
+  };
   for (std::size_t name = 0; name < kMountingNames.size(); ++name) {
     const MessagePlace& place = kMessagePlaces[name];
-    words += fmt::format("{}{} {:.4f} +- {:.4f} {}", words.empty() ? "" : ", ",
-                         kMountingNames[name], place.per_unit * fit.solution.value[place.value],
-                         place.per_unit * fit.sigma_of(place.value), name < 2 ? "deg" : "mm");
+    if (is_seen(fit.solution, place.value))
+      say(kMountingNames[name], place.value, place.per_unit, name < 2 ? "deg" : "mm");
   }
-  return words;
+  if (is_seen(fit.solution, kAxisHysteresis))
+    say("hysteresis", kAxisHysteresis, deg_from_rad(1.0), "deg");
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 CalibrationAdded MountingCalibration::add(int mode, const MountingResult& result) {
@@ -55,6 +61,9 @@ CalibrationOutcome MountingCalibration::fit(const LidarName& lidar, std::int64_t
   if (fits_.empty()) return {std::nullopt, "no sweep shows the mounting"};
   const JointMounting joint = join_mountings(fits_, rig_.geometry);
   std::string words = joint_in_words(joint, fits_.size());
+  if (!shows_mounting(joint.fit)) {
+    return {std::nullopt, "the sweeps show nothing of the mounting: " + joint.fit.advice};
+  }
   if (!joint.scatter.by_chance()) {
     return {std::nullopt,
             "the sweeps do not agree on one mounting: was the lidar or something in "

@@ -85,10 +85,10 @@ void put_values(Json& json, const MountingFit& fit) {
   put(json, "ry", "deg", fit, kMountingTilt, deg_from_rad(1.0));
   put(json, "tx", "mm", fit, kMountingLeverX, mm_from_m(1.0));
   put(json, "ty", "mm", fit, kMountingLeverY, mm_from_m(1.0));
-  const auto seen = [&](MountingValue value) { return fit.solution.unseen[value] < 0.5; };
-  if (seen(kAxisHysteresis))
+  if (is_seen(fit.solution, kAxisHysteresis))
     put(json, "hysteresis", "deg", fit, kAxisHysteresis, deg_from_rad(1.0));
-  if (seen(kRangeOffset)) put(json, "range_offset", "mm", fit, kRangeOffset, mm_from_m(1.0));
+  if (is_seen(fit.solution, kRangeOffset))
+    put(json, "range_offset", "mm", fit, kRangeOffset, mm_from_m(1.0));
 }
 
 Json steps_of(const MountingFit& fit) {
@@ -119,6 +119,10 @@ Json to_json(const std::vector<std::size_t>& sweeps, const MountingFit& fit) {
   json["unobservable"] = fit.unobservable;
   json["advice"] = fit.advice;
   json["residual_mm"] = mm_from_m(fit.residual_m);
+  if (fit.thickness_m > 0.0) {
+    json["largest_planes_nominal_mm"] = mm_from_m(fit.nominal_thickness_m);
+    json["largest_planes_mm"] = mm_from_m(fit.thickness_m);
+  }
   json["rays_on_planes"] = fit.rays;
   json["cells_seen_twice"] = fit.cells;
   if (fit.symmetric_rays.attempts > 0 || fit.half_scans) json["steps"] = steps_of(fit);
