@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/types/TypeObjectFactory.h>
 #include <algorithm>
 #include <deque>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -12,6 +13,17 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fstream>
+
+// Fast DDS 2.9 rebuilds every type that any peer describes, whether somebody wants to know or not,
+// and crashes where that is a sequence of structs that it has not met: one foreign program would
+// end all of ours. Nothing here discovers types. So this definition stands in for the library's,
+// which calls it through the dynamic linker, and that takes the program's first.
+namespace eprosima::fastrtps::types {
+DynamicType_ptr TypeObjectFactory::build_dynamic_type(const std::string&, const TypeIdentifier*,
+                                                      const TypeObject*) const {
+  return DynamicType_ptr(nullptr);
+}
+}  // namespace eprosima::fastrtps::types
 
 namespace swivel {
 
