@@ -54,6 +54,7 @@ if(NOT count EQUAL 8)
 endif()
 must(systemd-analyze verify --root=${root} --man=no --recursive-errors=no ${units})
 
+file(MAKE_DIRECTORY ${root}/etc)
 must(systemd-sysusers --root=${root} ${root}/usr/lib/sysusers.d/swivel.conf)
 file(READ ${root}/etc/passwd users)
 must_match("${users}" "swivel:x:[0-9]+:[0-9]+:[^\n]*:/var/lib/swivel:" "the user swivel")
