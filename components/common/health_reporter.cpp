@@ -1,6 +1,7 @@
 #include "components/common/health_reporter.hpp"
 
 #include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,6 +14,11 @@ namespace {
 std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+// One line: the next would be another message to systemd.
+void tell_systemd(const std::string& doing) {
+  sd_notify(0, ("STATUS=" + doing.substr(0, doing.find('\n'))).c_str());
 }
 
 }  // namespace
@@ -33,10 +39,12 @@ HealthReporter::HealthReporter(Participant& participant)
   participant.on_tick(std::chrono::seconds(1), [this] {
     const std::lock_guard lock(mutex_);
     publish();
+    feed_watchdog();
   });
 }
 
 HealthReporter::~HealthReporter() {
+  sd_notify(0, "STOPPING=1");
   set_state(msg::HEALTH_STOPPED, "stopped");
 }
 
@@ -66,6 +74,15 @@ void HealthReporter::set_fact(const std::string& name, const std::string& value)
   facts_[name] = value;
 }
 
+void HealthReporter::watch_over(std::function<bool()> others_work) {
+  others_work_ = std::move(others_work);
+}
+
+// Ready is who hears and answers others; waiting for a lidar is work, too.
+void HealthReporter::feed_watchdog() const {
+  if (others_work_()) sd_notify(0, "READY=1\nWATCHDOG=1");
+}
+
 void HealthReporter::publish() {
   counters_["samples_lost"] = participant_.samples_lost();
   health_.time_ns(now_ns());
@@ -84,6 +101,7 @@ void HealthReporter::publish() {
     health_.facts().push_back(fact);
   }
   writer_.write(health_);
+  tell_systemd(health_.doing());
 }
 
 }  // namespace swivel

@@ -80,6 +80,7 @@ void start_log(const std::string& program, const std::string& level) {
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
+  app.set_version_flag("--version", app.get_name() + " " SWIVEL_VERSION);
   try {
     app.parse(argc, argv);
     return body();

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/types/TypeObjectFactory.h>
 #include <algorithm>
 #include <deque>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -13,6 +14,19 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fstream>
 #include <typeinfo>
+
+#include "components/dds/shared_memory.hpp"
+
+// Fast DDS 2.9 rebuilds every type that any peer describes, whether somebody wants to know or not,
+// and crashes where that is a sequence of structs that it has not met: one foreign program would
+// end all of ours. Nothing here discovers types. So this definition stands in for the library's,
+// which calls it through the dynamic linker, and that takes the program's first.
+namespace eprosima::fastrtps::types {
+DynamicType_ptr TypeObjectFactory::build_dynamic_type(const std::string&, const TypeIdentifier*,
+                                                      const TypeObject*) const {
+  return DynamicType_ptr(nullptr);
+}
+}  // namespace eprosima::fastrtps::types
 
 namespace swivel {
 
@@ -35,8 +49,10 @@ class PeerListener : public fast::DomainParticipantListener {
                                 ParticipantDiscoveryInfo&& info) override {
     {
       const std::lock_guard lock(mutex_);
-      news_.push_back({info.info.m_participantName.c_str(), info.status});
-      names_[info.info.m_guid.guidPrefix] = info.info.m_participantName.c_str();
+      std::string name = info.info.m_participantName.c_str();
+      if (name.empty()) name = "a participant without a name";  // other vendors send none
+      names_[info.info.m_guid.guidPrefix] = name;
+      news_.push_back({std::move(name), info.status});
     }
     woken_.set_trigger_value(true);
   }
@@ -73,8 +89,6 @@ struct Participant::Endpoint {
 };
 
 namespace {
-
-constexpr int kUdpBufferBytes = 4 << 20;  // as config/dds_profiles.xml asks for
 
 const char* policy_in_words(fast::QosPolicyId_t policy) {
   switch (policy) {
@@ -131,6 +145,22 @@ fast::DomainParticipantQos participant_qos(const ParticipantOptions& options) {
   return qos;
 }
 
+// Fast DDS itself says nothing, and nothing arrives.
+void warn_of_other_users(const fast::DomainParticipantQos& qos) {
+  using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+  const auto& transports = qos.transport().user_transports;
+  const bool shares = std::any_of(transports.begin(), transports.end(), [](const auto& transport) {
+    return dynamic_cast<const SharedMemTransportDescriptor*>(transport.get()) != nullptr;
+  });
+  if (!shares) return;
+  for (const uid_t user : count_shared_memory().other_users) {
+    spdlog::warn(
+        "user {} runs DDS programs here, and shared memory does not cross users: what they and "
+        "we send may not arrive; run as one user, or one side with --network loopback_udp",
+        user);
+  }
+}
+
 void warn_of_small_udp_buffers() {
   int largest_bytes = 0;
   std::ifstream("/proc/sys/net/core/rmem_max") >> largest_bytes;
@@ -164,6 +194,7 @@ Participant::Participant(const ParticipantOptions& options)
   subscriber_ = participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT);
   wait_set_.attach_condition(woken_);
   if (options_.network != "loopback") warn_of_small_udp_buffers();
+  warn_of_other_users(qos);
 }
 
 Participant::~Participant() {

@@ -33,6 +33,10 @@
 
 namespace swivel {
 
+// What config/dds_profiles.xml asks the kernel for, so that it holds the bursts that a cloud comes
+// in.
+inline constexpr int kUdpBufferBytes = 4 << 20;
+
 struct ParticipantOptions {
   std::string name;           // "cloud_assembler"; what others see in their logs
   std::string rig;            // the first part of the topics' names

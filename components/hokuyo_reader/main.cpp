@@ -2,6 +2,7 @@
 // times and knows nothing of sweeps.
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <thread>
 
 #include "components/common/health_reporter.hpp"
@@ -84,6 +85,21 @@ void name_lidar(const std::optional<LidarIdentity>& lidar, HealthReporter& healt
   health.set_fact("firmware", lidar->firmware);
 }
 
+// When the session with the lidar last said anything: a scan, or how it stands.
+class LastWord {
+ public:
+  void note() { time_ = Clock::now().time_since_epoch().count(); }
+  bool is_recent() const {
+    return Clock::now().time_since_epoch() - Clock::duration(time_) < kLongestSilence;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  // It waits 10 s before another attempt, and then for each answer in turn.
+  static constexpr auto kLongestSilence = std::chrono::seconds(60);
+  std::atomic<Clock::rep> time_{Clock::now().time_since_epoch().count()};
+};
+
 LidarSection lidar_of(const RigFile& rig, const std::string& address) {
   if (!rig.lidar) throw ConfigurationError(rig.path + ": has no 'lidar' section to read from");
   LidarSection lidar = *rig.lidar;
@@ -97,9 +113,18 @@ void read(const CommonOptions& options, const std::string& address, StopSignal& 
   Participant participant(options.participant("hokuyo_reader", rig.rig));
   HealthReporter health(participant);
   Writer<msg::ScanLine> lines(participant, kScanLineTopic);
+  LastWord last_word;
+  health.watch_over([&] { return last_word.is_recent(); });
   ScipClient client(
-      client_options(lidar), [&](const LidarScan& scan) { lines.write(to_message(scan)); },
-      [&](const LidarReport& report) { tell(report, health); });
+      client_options(lidar),
+      [&](const LidarScan& scan) {
+        last_word.note();
+        lines.write(to_message(scan));
+      },
+      [&](const LidarReport& report) {
+        last_word.note();
+        tell(report, health);
+      });
   participant.on_tick(std::chrono::milliseconds(500), [&] {
     count(client.counters(), lines, health);
     name_lidar(client.identity(), health);

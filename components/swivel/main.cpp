@@ -10,7 +10,6 @@ int main(int argc, char** argv) {
   using namespace swivel;
   StopSignal stop;
   CLI::App app("Swivel: an accurate 3D scanner from a 2D lidar on an open-loop stepper", "swivel");
-  app.set_version_flag("--version", "swivel " SWIVEL_VERSION);
   Verb verb;
   add_up(app, stop, verb);
   add_status(app, stop, verb);
@@ -24,6 +23,7 @@ int main(int argc, char** argv) {
   add_process(app, verb);
   add_report(app, stop, verb);
   add_view(app, verb);
+  add_doctor(app, verb);
   add_demo(app, stop, verb);
   return run_program(app, argc, argv, [&] {
     if (!verb) throw ExitError(kExitUsage, "say what to do; the verbs:\n" + app.help());

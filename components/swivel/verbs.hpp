@@ -23,6 +23,7 @@ void add_mcap_verbs(CLI::App& app, Verb& chosen);  // info, check, recover, slic
 void add_process(CLI::App& app, Verb& chosen);
 void add_report(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_view(CLI::App& app, Verb& chosen);
+void add_doctor(CLI::App& app, Verb& chosen);
 void add_demo(CLI::App& app, StopSignal& stop, Verb& chosen);
 
 }  // namespace swivel
