@@ -151,7 +151,7 @@ TEST(Participant, CountsAHoleInTheSequenceAsALoss) {
   Seen<std::uint64_t> numbers;
   Seen<std::string> problems;
   receiver.on_problem([&](const std::string& problem) { problems.add(problem); });
-  // The reader is held in its callback until the writer's history of 200 has run over.
+  // The reader is held in its callback until the writer's history of 500 has run over.
   std::atomic<bool> hold{true};
   receiver.subscribe<msg::Axis>(kAxisTopic, [&](const auto& message) {
     numbers.add(message.sequence_number());
@@ -161,11 +161,11 @@ TEST(Participant, CountsAHoleInTheSequenceAsALoss) {
   receiver.start();
   axis.write(msg::Axis());
   ASSERT_TRUE(wait_until([&] { return numbers.values().size() == 1; }));
-  for (int i = 0; i < 500; ++i) axis.write(msg::Axis());
+  for (int i = 0; i < 1200; ++i) axis.write(msg::Axis());
   ASSERT_TRUE(axis.wait_until_acknowledged(std::chrono::seconds(10)));
   hold = false;
-  ASSERT_TRUE(wait_until([&] { return numbers.values().back() == 501; }));
-  EXPECT_EQ(numbers.values().size() + receiver.samples_lost(), 501U);
+  ASSERT_TRUE(wait_until([&] { return numbers.values().back() == 1201; }));
+  EXPECT_EQ(numbers.values().size() + receiver.samples_lost(), 1201U);
   EXPECT_GT(receiver.samples_lost(), 0U);
   ASSERT_FALSE(problems.values().empty());
   EXPECT_THAT(problems.values().front(), HasSubstr("samples of test_rig/axis lost"));
