@@ -74,6 +74,7 @@ TEST(RigFiles, EveryKeyMeansWhatItSays) {
   EXPECT_EQ(rig.timing, Timing::kEq7);
   EXPECT_EQ(rig.estimator, "other");
   EXPECT_EQ(rig.modes.lines, (std::map<int, int>{{2, 81}, {200, 20000}}));
+  EXPECT_DOUBLE_EQ(rig.modes.line_period_s, 0.026);
   EXPECT_NEAR(rig.geometry.bias_rad, rad_from_deg(1.5), 1e-15);
   // Turned about the fixed X, then Y, then Z.
   const Eigen::Isometry3d expected =
