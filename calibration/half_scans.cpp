@@ -61,7 +61,7 @@ void for_each_ray(const SweepReadings& readings, const RayMask& left_out, const 
   for (std::size_t line = 0; line < readings.lines.size(); ++line) {
     const LineOfReadings& said = readings.lines[line];
     for (std::size_t beam = 0; beam < count; ++beam) {
-      const double range_m = said.ranges_m[beam];
+      const double range_m{said.ranges_m[beam]};
       if (!(range_m < kFurthestM)) continue;
       if (!left_out.empty() && left_out[line * count + beam] != 0) continue;
       const ShaftTurn shaft = beams.shaft_at(said, beam);
@@ -107,7 +107,7 @@ Cells cells_of(const SweepReadings& readings, const std::vector<bool>& second,
                  if (!cell.normal) return;
                  cell.views[second[line] ? 1 : 0].moves +=
                      beams.moves_along(shaft.to_turning(*cell.normal), readings.lines[line], beam,
-                                       readings.lines[line].ranges_m[beam]);
+                                       double{readings.lines[line].ranges_m[beam]});
                });
   return cells;
 }
@@ -134,6 +134,7 @@ std::vector<CellResidual> residuals_of(const Cells& cells) {
 
 double scatter_in_sigmas(const std::vector<CellResidual>& residuals) {
   std::vector<double> sizes;
+  sizes.reserve(residuals.size());
   for (const CellResidual& residual : residuals)
     sizes.push_back(std::abs(residual.apart_m) / residual.sigma_m);
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);

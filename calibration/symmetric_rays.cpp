@@ -70,6 +70,7 @@ RayUnknowns difference_by_unknowns(const RayPair& pair, const RayUnknowns& unkno
 // For Ceres: the differences of all pairs, by the first one or all three of the unknowns.
 struct HeightDifferences {
   using Scalar = double;
+  // NOLINTBEGIN(readability-identifier-naming): Ceres asks for these names
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
 
   const RayPairs& pairs;
@@ -77,6 +78,7 @@ struct HeightDifferences {
 
   int NumResiduals() const { return static_cast<int>(pairs.size()); }
   int NumParameters() const { return unknowns; }
+  // NOLINTEND(readability-identifier-naming)
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
     RayUnknowns values = RayUnknowns::Zero();
@@ -128,8 +130,8 @@ RayPairs pairs_of(const SweepReadings& readings, double centreline_rad) {
     const auto other = static_cast<std::size_t>(opposite);
     for (std::size_t line = 0; line < readings.lines.size(); ++line) {
       const LineOfReadings& said = readings.lines[line];
-      const double first_m = said.ranges_m[beam];
-      const double second_m = said.ranges_m[other];
+      const double first_m{said.ranges_m[beam]};
+      const double second_m{said.ranges_m[other]};
       if (std::isnan(first_m) || std::isnan(second_m)) continue;
       const double axis_rad =
           said.axis_angle_rad + 0.5 * static_cast<double>(beam + other) * said.angle_per_beam_rad;
