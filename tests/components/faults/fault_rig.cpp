@@ -18,6 +18,7 @@ namespace swivel::test {
 namespace {
 
 constexpr double kNsPerSecond = 1e9;
+constexpr const char* kIdle = "waiting for a request";
 
 // The paper's bound for mode 1 is 1.25 deg; the alpha that is drawn is true here.
 constexpr double kAttitudeBoundDeg = 0.6;
@@ -39,7 +40,7 @@ int connect_control(const std::string& path) {
   return descriptor;
 }
 
-// The latest one that is wanted and was said since the mark; waits for it.
+// The first that is wanted; waits for it.
 template <class Message, class Wanted>
 std::optional<Message> wait_for(std::mutex& mutex, const std::vector<Message>& said,
                                 const Wanted& wanted, double limit_s) {
@@ -48,8 +49,8 @@ std::optional<Message> wait_for(std::mutex& mutex, const std::vector<Message>& s
   for (;;) {
     {
       const std::lock_guard lock(mutex);
-      const auto found = std::find_if(said.rbegin(), said.rend(), wanted);
-      if (found != said.rend()) return *found;
+      const auto found = std::find_if(said.begin(), said.end(), wanted);
+      if (found != said.end()) return *found;
     }
     if (std::chrono::steady_clock::now() > deadline) return std::nullopt;
     usleep(2000);
@@ -148,14 +149,16 @@ void FaultRig::start(const std::string& participant) {
 void FaultRig::signal(const std::string& participant, int number) {
   ChildProcess& child = *children_.at(participant);
   ::kill(child.id(), number);
-  if (number == SIGKILL) EXPECT_TRUE(child.wait_or_kill(std::chrono::seconds(2)));
+  if (number != SIGKILL) return;
+  EXPECT_TRUE(child.wait_or_kill(std::chrono::seconds(2)));
 }
 
 bool FaultRig::ready() {
   return std::all_of(names_.begin(), names_.end(), [&](const std::string& name) {
     return wait_until([&] {
       const auto last = health(name);
-      return last && last->state() == msg::HEALTH_OK &&
+      const bool idle = name != "stepper_sequencer" || (last && last->doing() == kIdle);
+      return last && idle && last->state() == msg::HEALTH_OK &&
              last->process_id() == static_cast<std::uint32_t>(children_.at(name)->id());
     });
   });
@@ -211,10 +214,11 @@ std::optional<msg::Health> FaultRig::await_error(const std::string& participant,
 }
 
 std::optional<msg::Health> FaultRig::health(const std::string& participant) {
-  return wait_for(
-      mutex_, healths_,
-      [&](const msg::Health& health) { return health.participant().to_string() == participant; },
-      0.0);
+  const std::lock_guard lock(mutex_);
+  const auto last = std::find_if(
+      healths_.rbegin(), healths_.rend(),
+      [&](const msg::Health& health) { return health.participant().to_string() == participant; });
+  return last == healths_.rend() ? std::nullopt : std::optional(*last);
 }
 
 std::uint64_t FaultRig::counter(const std::string& participant, const std::string& name) {
@@ -243,6 +247,18 @@ void expect_a_right_sweep(FaultRig& rig) {
   EXPECT_LT(std::abs(std::remainder(attitude->phi_offset_deg() - *phi_deg, 360.0)),
             kAttitudeBoundDeg);
   EXPECT_TRUE(rig.await(msg::PHASE_IDLE));
+}
+
+bool FaultRig::go_into_a_sweep(double part) {
+  ask();
+  const auto cruising = await(msg::PHASE_CRUISING);
+  if (!cruising) return false;
+  const auto length_ns =
+      static_cast<double>(cruising->window_end_ns() - cruising->window_start_ns());
+  const std::int64_t there_ns = cruising->window_start_ns() + std::llround(part * length_ns);
+  while (now_ns() < there_ns) usleep(1000);
+  mark();
+  return true;
 }
 
 std::int64_t time_of_standstill_ns(FaultRig& rig) {

@@ -41,6 +41,8 @@ class FaultRig {
 
   bool ready();  // every participant has said so, in this life
   void ask(int mode = 1, int count = 1);
+  // Asks for a sweep in mode 1, waits until this part of its window is over, and marks.
+  bool go_into_a_sweep(double part = 0.3);
   void mark();   // what was said before does not count any more
   void leave();  // nobody but the participants is there any more
 

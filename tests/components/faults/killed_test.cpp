@@ -11,10 +11,8 @@ namespace {
 class Killed : public FaultSuite {
  protected:
   static void kill_in_a_sweep(const std::string& participant) {
-    rig().ask();
-    ASSERT_TRUE(rig().await(msg::PHASE_CRUISING));
+    ASSERT_TRUE(rig().go_into_a_sweep());
     rig().signal(participant, SIGKILL);
-    rig().mark();
   }
 
   static void expect_its_role_back_within_3_s(const std::string& participant) {

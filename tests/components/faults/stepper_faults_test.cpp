@@ -16,9 +16,7 @@ class StepperFaults : public FaultSuite {
  protected:
   // Gives the command in the middle of a sweep; the fault that is told of it.
   static std::optional<msg::Sweep> fault_after(const std::string& command) {
-    rig().ask();
-    if (!rig().await(msg::PHASE_CRUISING)) return std::nullopt;
-    rig().mark();
+    if (!rig().go_into_a_sweep()) return std::nullopt;
     rig().bench(command);
     return rig().await(msg::PHASE_FAULT, 3.0);
   }
@@ -79,14 +77,11 @@ TEST_F(StepperFaults, AResetByItsSupply) {
 
 // The controller does not know: only the walls at both ends of the sweep do.
 TEST_F(StepperFaults, LostStepsMakeTheSweepNotGood) {
-  rig().ask();
-  const auto cruising = rig().await(msg::PHASE_CRUISING);
-  ASSERT_TRUE(cruising);
-  // In the middle of the window.
-  while (rig().shaft().time_ns < (cruising->window_start_ns() + cruising->window_end_ns()) / 2) {
-  }
+  ASSERT_TRUE(rig().go_into_a_sweep(0.2));  // before the plate is seen
   rig().bench("stepper lose 15");
-  const auto attitude = rig().await_attitude(cruising->sweep_id());
+  const auto sweep = rig().await(msg::PHASE_ASSEMBLED);
+  ASSERT_TRUE(sweep);
+  const auto attitude = rig().await_attitude(sweep->sweep_id());
   ASSERT_TRUE(attitude);
   EXPECT_NE(attitude->verdict(), msg::VERDICT_GOOD);
   EXPECT_THAT(attitude->reason(), HasSubstr("steps"));
