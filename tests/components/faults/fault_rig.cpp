@@ -230,6 +230,13 @@ std::optional<double> FaultRig::true_phi_deg(const msg::Attitude& attitude) cons
   return TruthFile(scratch_.file("truth.csv")).phi_deg(attitude.first_device_stamp_ms());
 }
 
+void expect_true(FaultRig& rig, const msg::Attitude& attitude) {
+  const auto phi_deg = rig.true_phi_deg(attitude);
+  ASSERT_TRUE(phi_deg);
+  EXPECT_LT(std::abs(std::remainder(attitude.phi_offset_deg() - *phi_deg, 360.0)),
+            kAttitudeBoundDeg);
+}
+
 void expect_a_right_sweep(FaultRig& rig) {
   ASSERT_TRUE(rig.ready());
   rig.mark();
@@ -242,10 +249,7 @@ void expect_a_right_sweep(FaultRig& rig) {
   ASSERT_TRUE(attitude);
   EXPECT_EQ(attitude->verdict(), msg::VERDICT_GOOD) << attitude->reason();
   EXPECT_EQ(attitude->lines_missing(), 0U);
-  const auto phi_deg = rig.true_phi_deg(*attitude);
-  ASSERT_TRUE(phi_deg);
-  EXPECT_LT(std::abs(std::remainder(attitude->phi_offset_deg() - *phi_deg, 360.0)),
-            kAttitudeBoundDeg);
+  expect_true(rig, *attitude);
   EXPECT_TRUE(rig.await(msg::PHASE_IDLE));
 }
 

@@ -85,6 +85,9 @@ class FaultRig {
   std::unique_ptr<SweepRequester> requester_;
 };
 
+// The attitude that was found, against the truth; fails where there is none.
+void expect_true(FaultRig& rig, const msg::Attitude& attitude);
+
 // Asks for a sweep, and holds it against the truth: every line in, the attitude right.
 void expect_a_right_sweep(FaultRig& rig);
 

@@ -110,6 +110,9 @@ TEST_F(LidarFaults, StampsThatJump) {
   const std::uint64_t restarts = count("clock_restarts");
   const auto sweep = sweep_with("lidar stamp 16777000");
   ASSERT_TRUE(sweep);
+  const auto attitude = rig().await_attitude(sweep->sweep_id());
+  ASSERT_TRUE(attitude);
+  if (sweep->complete() && attitude->verdict() == msg::VERDICT_GOOD) expect_true(rig(), *attitude);
   EXPECT_TRUE(rig().await_health(kReader, [&](const msg::Health& health) {
     return counter_of(health, "clock_restarts").value_or(0) == restarts + 1;
   }));
