@@ -1,6 +1,7 @@
 // What the controller's settings say about the motion, and what a turn may be.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ struct TurnLimits {
   double home_angle_deg = 0.0;         // axis angle of the home switch
   double cable_limit_deg = 330.0;      // never further than this from the home switch
   double minimum_step_rate_hz = 30.0;  // GRBL turns faster than told below this
-  double max_speed_deg_s = 720.0;
+  double max_speed_deg_s = std::numeric_limits<double>::infinity();
 };
 
 // Where the controller by itself would let the shaft go further or faster than the rig may.

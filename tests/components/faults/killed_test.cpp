@@ -51,6 +51,9 @@ TEST_F(Killed, TheAssembler) {
 TEST_F(Killed, TheCorrector) {
   kill_in_a_sweep("attitude_corrector");
   expect_its_role_back_within_3_s("attitude_corrector");
+  const auto sweep = rig().await(msg::PHASE_ASSEMBLED);
+  ASSERT_TRUE(sweep);
+  EXPECT_TRUE(rig().await_attitude(sweep->sweep_id()));
   let_the_sweep_end();
 }
 
