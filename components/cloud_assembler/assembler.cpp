@@ -19,6 +19,7 @@ constexpr std::int64_t kAxisMemoryNs = 60'000'000'000;
 // A line on its way may be this late against the sequencer's word that the sweep is over.
 constexpr auto kGraceAfterSweep = std::chrono::seconds(1);
 constexpr auto kSilence = std::chrono::seconds(5);
+constexpr auto kHistoryComesWithin = std::chrono::seconds(2);
 
 bool well_formed(const msg::ScanLine& line) {
   const std::size_t beams = line.ranges_mm().size();
@@ -68,6 +69,7 @@ void Assembler::add(const msg::ScanLine& line) {
     counters_.lines_outside += waiting_.size();
     waiting_.clear();
   }
+  if (first_line_ns_ == 0) first_line_ns_ = line.beam0_time_ns();
   waiting_.push_back(line);
   place_lines();
   forget_old_lines();
@@ -129,9 +131,14 @@ bool Assembler::told_before(const msg::Sweep& sweep) const {
 }
 
 void Assembler::begin(const msg::Sweep& sweep) {
-  if (sweep_) close("the next sweep began before the last line was in");
+  if (sweep_ && told_at_start_ && first_line_ns_ == 0) {
+    ++counters_.sweeps_before_start;
+  } else if (sweep_) {
+    close("the next sweep began before the last line was in");
+  }
   sweep_ = std::make_unique<SweepInProgress>(options_, sweep);
   ending_ = false;
+  told_at_start_ = start_ && last_check_ - *start_ < kHistoryComesWithin;
 }
 
 // A reason says that the turn ended early. After the window was left without one, it is told of
@@ -201,7 +208,19 @@ void Assembler::place(const msg::ScanLine& line) {
   }
 }
 
+// Who starts late is told of earlier sweeps too. Those whose lines are gone were the affair of
+// the assembler before us: to call them incomplete would belie a good cloud.
+bool Assembler::was_before_our_time() const {
+  return told_at_start_ && sweep_->cloud().points.empty() &&
+         first_line_ns_ > sweep_->announced().window_end_ns();
+}
+
 void Assembler::close(const std::string& reason) {
+  if (was_before_our_time()) {
+    ++counters_.sweeps_before_start;
+    sweep_.reset();
+    return;
+  }
   msg::Sweep summary = sweep_->summary(reason);
   if (!summary.complete()) {
     summary.reason(std::to_string(summary.lines_missing()) + " of " +
@@ -218,6 +237,8 @@ void Assembler::close(const std::string& reason) {
 }
 
 void Assembler::check(steady_clock::time_point now) {
+  if (!start_) start_ = now;
+  last_check_ = now;
   if (news_) last_news_ = now;
   news_ = false;
   if (!ending_) ending_since_ = now;

@@ -14,6 +14,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "calibration/axis_track.hpp"
@@ -42,6 +43,7 @@ struct AssemblerCounters {
   std::uint64_t windows_rejected = 0;       // malformed, or not after the one before
   std::uint64_t sweeps_complete = 0;
   std::uint64_t sweeps_incomplete = 0;
+  std::uint64_t sweeps_before_start = 0;  // told of at the start, their lines long gone
 };
 
 class Assembler {
@@ -58,7 +60,8 @@ class Assembler {
   void add(const msg::Sweep& sweep);
 
   // To be called now and then with a steady clock: closes a sweep whose lines do not come. A
-  // window must open within 5 s of its announcement.
+  // window must open within 5 s of its announcement. The first call is the start: what was said
+  // before it comes within the next 2 s.
   void check(std::chrono::steady_clock::time_point now);
 
   // Closes what is open: no more will come.
@@ -81,6 +84,7 @@ class Assembler {
   void place(const msg::ScanLine& line);
   bool lacks_angles() const;
   void close(const std::string& reason);
+  bool was_before_our_time() const;
   bool belongs_to_last_closed(const msg::ScanLine& line) const;
   void forget_old_lines();
 
@@ -93,9 +97,13 @@ class Assembler {
   std::deque<msg::ScanLine> waiting_;  // in order of time
   std::unique_ptr<SweepInProgress> sweep_;
   msg::Sweep last_closed_;
-  std::int64_t last_used_ns_ = 0;  // of the last line placed, its last beam
-  bool ending_ = false;            // the sequencer has left the window, and all was well
-  bool news_ = false;              // since the last check
+  std::int64_t last_used_ns_ = 0;   // of the last line placed, its last beam
+  bool ending_ = false;             // the sequencer has left the window, and all was well
+  bool news_ = false;               // since the last check
+  bool told_at_start_ = false;      // of the sweep
+  std::int64_t first_line_ns_ = 0;  // of all that ever came
+  std::optional<std::chrono::steady_clock::time_point> start_;
+  std::chrono::steady_clock::time_point last_check_{};
   std::chrono::steady_clock::time_point last_news_{};
   std::chrono::steady_clock::time_point ending_since_{};
   AssemblerCounters counters_;

@@ -92,6 +92,7 @@ void report(const Assembler& assembler, const SweepPublisher& publisher, HealthR
   health.set_counter("axis_samples_rejected", counters.axis_samples_rejected);
   health.set_counter("sweeps_complete", counters.sweeps_complete);
   health.set_counter("sweeps_incomplete", counters.sweeps_incomplete);
+  health.set_counter("sweeps_before_start", counters.sweeps_before_start);
   health.set_counter("clouds_written", publisher.clouds_written());
   health.set_state(counters.lines_received == 0 ? msg::HEALTH_WAITING : msg::HEALTH_OK,
                    counters.lines_received == 0 ? "waiting for scan lines" : "assembling");
@@ -118,6 +119,7 @@ void assemble(const CommonOptions& options, StopSignal& stop) {
     assembler.check(std::chrono::steady_clock::now());
     report(assembler, publisher, health);
   });
+  assembler.check(std::chrono::steady_clock::now());
   participant.start();
   stop.wait();
   participant.stop();

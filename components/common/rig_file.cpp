@@ -39,6 +39,7 @@ StepperSection read_stepper(YamlSection section) {
   stepper.address = section.text("address");
   stepper.home_angle_deg = section.number("home_angle_deg", kAngle);
   stepper.cable_limit_deg = section.number("cable_limit_deg", {1.0, 3600.0});
+  stepper.max_speed_deg_s = section.number("max_speed_deg_s", {1.0, 720.0}, 720.0);
   stepper.return_speed_deg_s = section.number("return_speed_deg_s", {1.0, 720.0});
   stepper.settle_s = section.number("settle_s", {0.0, 5.0});
   stepper.minimum_step_rate_hz = section.number("minimum_step_rate_hz", {0.0, 1e5}, 30.0);

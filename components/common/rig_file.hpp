@@ -21,6 +21,7 @@ struct StepperSection {
   std::string address;
   double home_angle_deg = 0.0;
   double cable_limit_deg = 0.0;
+  double max_speed_deg_s = 0.0;
   double return_speed_deg_s = 0.0;
   double settle_s = 0.0;
   double minimum_step_rate_hz = 0.0;

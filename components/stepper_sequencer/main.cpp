@@ -22,6 +22,8 @@ SequencerOptions sequencer_options(const RigFile& rig, const std::string& addres
   options.stepper.limits.home_angle_deg = rig.stepper->home_angle_deg;
   options.stepper.limits.cable_limit_deg = rig.stepper->cable_limit_deg;
   options.stepper.limits.minimum_step_rate_hz = rig.stepper->minimum_step_rate_hz;
+  options.stepper.limits.max_speed_deg_s = rig.stepper->max_speed_deg_s;
+  options.stepper.guard_program = program_directory() + "/motor_guard";
   options.sweep.sweep_angle_deg = rig.modes.sweep_angle_deg;
   options.sweep.lines_of_mode.clear();
   for (const auto& [mode, lines] : rig.modes.lines) {
@@ -77,8 +79,30 @@ void report(const Sequencer& sequencer, HealthReporter& health) {
   health.set_counter("faults", now.faults);
   health.set_counter("garbage_lines", now.garbage_lines);
   health.set_counter("positions_left_out", now.positions_left_out);
+  if (!now.firmware.empty()) health.set_fact("controller", "GRBL " + now.firmware);
+  for (std::size_t i = 0; i < now.advice.size(); ++i) {
+    health.set_fact("advice " + std::to_string(i + 1), now.advice[i]);
+  }
   health.set_state(now.ready ? msg::HEALTH_OK : msg::HEALTH_WAITING, now.doing);
 }
+
+// Once all who listened have left, by themselves or with the network, nobody sees where the
+// shaft goes: what is under way is cancelled.
+class Audience {
+ public:
+  void check(std::size_t listeners, Sequencer& sequencer) {
+    const bool has_left = listeners == 0 && listeners_ > 0;
+    listeners_ = listeners;
+    if (!has_left) return;
+    spdlog::warn("nobody listens any more: a sweep under way is cancelled");
+    msg::SweepRequest cancel;
+    cancel.cancel(true);
+    sequencer.request(cancel);
+  }
+
+ private:
+  std::size_t listeners_ = 0;
+};
 
 void sequence(const CommonOptions& options, const std::string& address, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
@@ -87,6 +111,7 @@ void sequence(const CommonOptions& options, const std::string& address, StopSign
   HealthReporter health(participant);
   Writer<msg::Sweep> sweeps(participant, kSweepTopic);
   Writer<msg::Axis> axis(participant, kAxisTopic);
+  Audience audience;
   Sequencer sequencer(sequencer_settings,
                       {[&](const msg::Sweep& sweep) {
                          tell(sweep, health);
@@ -95,7 +120,11 @@ void sequence(const CommonOptions& options, const std::string& address, StopSign
                        [&](const msg::Axis& samples) { axis.write(msg::Axis(samples)); }});
   participant.subscribe<msg::SweepRequest>(
       kSweepRequestTopic, [&](const auto& request) { sequencer.request(request); });
-  participant.on_tick(std::chrono::milliseconds(200), [&] { report(sequencer, health); });
+  participant.on_tick(std::chrono::milliseconds(200), [&] {
+    audience.check(sweeps.reader_count(), sequencer);
+    health.set_counter("messages_not_sent", sweeps.failures() + axis.failures());
+    report(sequencer, health);
+  });
   participant.start();
   sequencer.start();
   stop.wait();

@@ -50,6 +50,8 @@ void BenchCommandLine::add_files(CLI::App& app) {
                       [](BenchOptions& b, const std::string& v) { b.stepper_link = v; });
   option<std::string>(app, "--truth", "Write what really happened to this CSV file",
                       [](BenchOptions& b, const std::string& v) { b.truth_path = v; });
+  option<std::string>(app, "--control", "Make this Unix socket, which takes faults and questions",
+                      [](BenchOptions& b, const std::string& v) { b.control_path = v; });
   option<std::uint64_t>(app, "--seed", "Of all random numbers",
                         [](BenchOptions& b, std::uint64_t v) { b.seed = v; });
   option<int>(app, "--port", "Of the lidar, on 127.0.0.1; 0 for any free one",

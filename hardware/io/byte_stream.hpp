@@ -45,6 +45,7 @@ class ByteStream {
   Outcome write_all(std::string_view bytes, std::chrono::milliseconds timeout);
 
   const std::string& address() const { return address_; }
+  int descriptor() const { return descriptor_; }  // stays ours
 
  private:
   ByteStream(int descriptor, bool is_socket, std::string address);

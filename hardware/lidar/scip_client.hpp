@@ -66,7 +66,7 @@ struct ScipClientOptions {
   std::chrono::milliseconds first_scan_timeout{5000};
   double watchdog_scan_periods = 20.0;  // the longest wait for a good scan
   std::chrono::milliseconds shortest_backoff{500};
-  std::chrono::milliseconds longest_backoff{10000};
+  std::chrono::milliseconds longest_backoff{1000};  // so that it is soon back once it can be
   int clock_readings = 20;
 };
 

@@ -30,7 +30,10 @@ Bench::Bench(const BenchOptions& options)
       truth_(options.truth_path),
       server_(options.server, sensor_, timing_,
               [this](std::uint64_t scan) { return cast_scan(scan); }),
-      stepper_port_(stepper_, options.stepper_link) {
+      stepper_port_(stepper_, options.stepper_link),
+      control_(options.control_path),
+      lowest_deg_(stepper_.shaft_angle_deg(start_ns_)),
+      highest_deg_(lowest_deg_) {
   note_truth(options);
 }
 
@@ -78,8 +81,16 @@ void Bench::run(const WakeUp& stop) {
     const std::int64_t time_ns = now_ns();
     stepper_port_.serve(time_ns);
     server_.serve(time_ns);
+    note_shaft(time_ns);
+    control_.serve([&](const std::string& command) { return obey(command, time_ns); });
     wait(stop);
   }
+}
+
+void Bench::note_shaft(std::int64_t now_ns) {
+  const double angle_deg = stepper_.shaft_angle_deg(now_ns);
+  lowest_deg_ = std::min(lowest_deg_, angle_deg);
+  highest_deg_ = std::max(highest_deg_, angle_deg);
 }
 
 void Bench::wait(const WakeUp& stop) const {
@@ -87,6 +98,7 @@ void Bench::wait(const WakeUp& stop) const {
   std::vector<pollfd> waits = {{stop.descriptor(), POLLIN, 0}};
   server_.add_to(waits, time_ns);
   stepper_port_.add_to(waits);
+  control_.add_to(waits);
   const std::int64_t until_ns =
       std::min(server_.next_event_ns(), stepper_port_.next_event_ns(time_ns));
   const std::int64_t wait_ns =

@@ -61,6 +61,18 @@ void GrblPeer::alarm(int number) {
   after_quiet_ = "[MSG:Reset to continue]\r\n";
 }
 
+void GrblPeer::raise_alarm(int number, std::int64_t now_ns) {
+  advance(now_ns);
+  axis_.halt(now_ns);
+  alarm(number);
+  quiet_until_ns_ = now_ns + kAlarmSilence_ns;
+  if (number == 1 || number == 2) return;
+  dead_ = false;
+  after_quiet_.clear();
+  const bool a_probes = number == 4 || number == 5;
+  if (!a_probes) restart(kAlarmSilence_ns, now_ns);
+}
+
 std::string GrblPeer::take_output() {
   return std::exchange(output_, {});
 }
@@ -144,8 +156,9 @@ void GrblPeer::advance(std::int64_t now_ns) {
 void GrblPeer::advance_homing(std::int64_t now_ns) {
   while (homing_phase_ < homing_ends_ns_.size() && now_ns >= homing_ends_ns_[homing_phase_]) {
     ++homing_phase_;
-    if (!options_.switch_works) {
-      output_ += "ALARM:9\r\n";
+    if (axis_.home_switch() != HomeSwitch::kWorks) {
+      // One that never closes was not found; one that never opens cannot be left again.
+      output_ += axis_.home_switch() == HomeSwitch::kOpen ? "ALARM:9\r\n" : "ALARM:8\r\n";
       axis_.halt(now_ns);
       state_ = State::kAlarm;
       return restart(kAlarmSilence_ns, now_ns);

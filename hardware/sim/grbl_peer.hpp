@@ -29,6 +29,11 @@ class GrblPeer {
   void advance(std::int64_t now_ns);
   std::string take_output();
 
+  // Faults from now on.
+  void raise_alarm(int number, std::int64_t now_ns);  // 1 and 2 keep it deaf until a reset
+  void lose_steps(double angle_deg, std::int64_t now_ns) { axis_.lose_steps(angle_deg, now_ns); }
+  void set_switch(HomeSwitch home_switch) { axis_.set_switch(home_switch); }
+
   // Something may come of itself: call advance() every few milliseconds.
   bool busy(std::int64_t now_ns) const;
 

@@ -13,6 +13,8 @@
 #include <system_error>
 #include <utility>
 
+#include "hardware/sim/sim_time.hpp"
+
 namespace swivel::sim {
 namespace {
 
@@ -33,8 +35,12 @@ void prepare(const std::string& path) {
 
 }  // namespace
 
-GrblPort::GrblPort(GrblPeer& peer, const std::string& link)
-    : peer_(&peer), link_(link), pty_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+GrblPort::GrblPort(GrblPeer& peer, const std::string& link) : peer_(&peer), link_(link) {
+  plug_in();
+}
+
+void GrblPort::plug_in() {
+  pty_ = FileDescriptor(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   char path[128];
   if (!pty_.open() || ::grantpt(pty_.get()) != 0 || ::unlockpt(pty_.get()) != 0 ||
       ::ptsname_r(pty_.get(), path, sizeof path) != 0) {
@@ -85,7 +91,27 @@ void GrblPort::note_openings(std::int64_t now_ns) {
   }
 }
 
+// A new pty takes its place in the end, as a USB device comes back under another number.
+void GrblPort::unplug(double duration_s, std::int64_t now_ns) {
+  pty_.close();
+  openings_.close();
+  if (!link_.empty()) ::unlink(link_.c_str());
+  clients_ = 0;
+  held_.clear();
+  outgoing_.clear();
+  plugged_in_at_ns_ = now_ns + ns_from_s(duration_s);
+}
+
+void GrblPort::silence(double duration_s, std::int64_t now_ns) {
+  silent_until_ns_ = now_ns + ns_from_s(duration_s);
+}
+
+void GrblPort::delay_answers(double delay_s) {
+  answer_delay_ns_ = ns_from_s(delay_s);
+}
+
 void GrblPort::add_to(std::vector<pollfd>& waits) const {
+  if (!pty_.open()) return;
   waits.push_back({openings_.get(), POLLIN, 0});
   if (clients_ == 0) return;  // hung up: poll would return at once, again and again
   const bool sends = !outgoing_.empty();
@@ -93,17 +119,30 @@ void GrblPort::add_to(std::vector<pollfd>& waits) const {
 }
 
 std::int64_t GrblPort::next_event_ns(std::int64_t now_ns) const {
-  if (peer_->busy(now_ns)) return now_ns + kBusyTickNs;
+  if (peer_->busy(now_ns) || !held_.empty()) return now_ns + kBusyTickNs;
+  if (!pty_.open()) return plugged_in_at_ns_;
   return std::numeric_limits<std::int64_t>::max();
 }
 
 void GrblPort::serve(std::int64_t now_ns) {
-  note_openings(now_ns);
-  read_client(now_ns);
+  if (!pty_.open() && now_ns >= plugged_in_at_ns_) plug_in();
+  if (pty_.open()) note_openings(now_ns);
+  if (pty_.open()) read_client(now_ns);
   peer_->advance(now_ns);
-  outgoing_ += peer_->take_output();
+  take_answers(now_ns);
   if (clients_ == 0) outgoing_.clear();
   write_client();
+}
+
+void GrblPort::take_answers(std::int64_t now_ns) {
+  std::string text = peer_->take_output();
+  if (!text.empty() && now_ns >= silent_until_ns_) {
+    held_.push_back({std::move(text), now_ns + answer_delay_ns_});
+  }
+  while (!held_.empty() && now_ns >= held_.front().due_ns) {
+    outgoing_ += held_.front().text;
+    held_.pop_front();
+  }
 }
 
 void GrblPort::read_client(std::int64_t now_ns) {

@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,19 @@ class GrblPort {
   std::int64_t next_event_ns(std::int64_t now_ns) const;
   void serve(std::int64_t now_ns);  // never blocks
 
+  // Faults from now on.
+  void unplug(double duration_s, std::int64_t now_ns);  // the controller keeps its power
+  void silence(double duration_s, std::int64_t now_ns);
+  void delay_answers(double delay_s);
+
  private:
+  struct Answer {
+    std::string text;
+    std::int64_t due_ns;
+  };
+
+  void plug_in();
+  void take_answers(std::int64_t now_ns);
   void make_link();
   void watch_openings();
   void note_openings(std::int64_t now_ns);
@@ -40,6 +53,10 @@ class GrblPort {
   FileDescriptor openings_;
   int clients_ = 0;  // that have it open
   std::string outgoing_;
+  std::deque<Answer> held_;
+  std::int64_t answer_delay_ns_ = 0;
+  std::int64_t silent_until_ns_ = 0;
+  std::int64_t plugged_in_at_ns_ = 0;  // once unplugged; 0: it is in
 };
 
 }  // namespace swivel::sim

@@ -63,8 +63,8 @@ std::uint32_t LidarTiming::stamp_ms(std::uint64_t scan) const {
   return counter_ms(beam0_time_ns(scan) - std::llround(earlier_ns));
 }
 
-void LidarTiming::reset_counter(std::int64_t time_ns) {
-  counter_start_ms_ = 0.0;
+void LidarTiming::reset_counter(std::int64_t time_ns, double counter_ms) {
+  counter_start_ms_ = counter_ms;
   counter_since_ns_ = time_ns;
 }
 

@@ -32,7 +32,7 @@ class LidarTiming {
 
   std::uint32_t stamp_ms(std::uint64_t scan) const;  // 24 bits
   std::uint32_t counter_ms(std::int64_t time_ns) const;
-  void reset_counter(std::int64_t time_ns);  // to 0, as RS does
+  void reset_counter(std::int64_t time_ns, double counter_ms = 0.0);  // to 0, as RS does
 
  private:
   double counter(double time_ns) const;

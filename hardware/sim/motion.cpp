@@ -117,6 +117,13 @@ void Motion::place(double position_steps, std::int64_t now_ns) {
   moves_.clear();
 }
 
+void Motion::lose(double steps, std::int64_t now_ns) {
+  const MotionPiece& present = piece_at(now_ns);
+  for (MotionPiece& piece : pieces_) {
+    if (piece.start_ns >= present.start_ns) piece.lost_steps += steps;
+  }
+}
+
 void Motion::glide(double target_steps, double duration_s, std::int64_t start_ns) {
   cut(start_ns);
   pieces_.back().speed_steps_s = (target_steps - pieces_.back().position_steps) / duration_s;

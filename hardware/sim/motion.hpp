@@ -45,6 +45,7 @@ class Motion {
   void forget_moves();
   void halt(std::int64_t now_ns);  // stands still at once, as when the pulses end
   void place(double position_steps, std::int64_t now_ns);  // halts there
+  void lose(double steps, std::int64_t now_ns);            // that many more, all at once
   // At one speed to `target_steps`, with no regard to acceleration: the homing cycle.
   void glide(double target_steps, double duration_s, std::int64_t start_ns);
 

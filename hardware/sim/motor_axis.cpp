@@ -16,7 +16,8 @@ constexpr std::uint64_t kMotorStream = 0x4070;
 MotorAxis::MotorAxis(const MotorOptions& options, std::uint64_t seed, std::int64_t now_ns)
     : options_(options),
       random_(seed, kMotorStream),
-      motion_(now_ns, {options.lose_every, now_ns + ns_from_s(options.lose_after_s)}) {}
+      motion_(now_ns, {options.lose_every, now_ns + ns_from_s(options.lose_after_s)}),
+      home_switch_(options.switch_works ? HomeSwitch::kWorks : HomeSwitch::kOpen) {}
 
 void MotorAxis::move_to(double target_deg, double speed_deg_s, const GrblSettings& settings,
                         std::int64_t now_ns) {
@@ -31,6 +32,10 @@ void MotorAxis::move_to(double target_deg, double speed_deg_s, const GrblSetting
       random_.uniform(options_.start_latency_min_ms, options_.start_latency_max_ms);
   motion_.add(move, acceleration * clock_gain() * clock_gain(), now_ns,
               now_ns + ns_from_s(latency_ms * 1e-3));
+}
+
+void MotorAxis::lose_steps(double angle_deg, std::int64_t now_ns) {
+  motion_.lose(std::round(angle_deg * options_.shaft.steps_per_turn / 360.0), now_ns);
 }
 
 void MotorAxis::zero_position(std::int64_t now_ns) {
@@ -95,7 +100,8 @@ double MotorAxis::believed_speed_deg_s(const GrblSettings& settings, std::int64_
 
 bool MotorAxis::at_switch(const GrblSettings& settings, std::int64_t now_ns) const {
   const double switch_deg = options_.home_angle_deg + home_error_deg_ - settings.pull_off_deg();
-  return options_.switch_works && shaft_angle_deg(now_ns) <= switch_deg + 1e-9;
+  if (home_switch_ == HomeSwitch::kClosed) return true;
+  return home_switch_ == HomeSwitch::kWorks && shaft_angle_deg(now_ns) <= switch_deg + 1e-9;
 }
 
 double MotorAxis::shaft_angle_deg(std::int64_t time_ns) const {

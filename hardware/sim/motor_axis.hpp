@@ -36,6 +36,8 @@ struct MotorOptions {
   EncoderOptions encoder;
 };
 
+enum class HomeSwitch { kWorks, kOpen, kClosed };  // the latter two always
+
 class MotorAxis {
  public:
   MotorAxis(const MotorOptions& options, std::uint64_t seed, std::int64_t now_ns);
@@ -46,6 +48,9 @@ class MotorAxis {
   void resume(std::int64_t now_ns) { motion_.resume(now_ns); }
   void forget_moves() { motion_.forget_moves(); }
   void halt(std::int64_t now_ns) { motion_.halt(now_ns); }
+  void lose_steps(double angle_deg, std::int64_t now_ns);  // the shaft stays behind by this
+  HomeSwitch home_switch() const { return home_switch_; }
+  void set_switch(HomeSwitch home_switch) { home_switch_ = home_switch; }
   void zero_position(std::int64_t now_ns);  // MPos is 0 here, as after power-up
 
   // Seek, back off, find again, back off: the ends of the four phases.
@@ -70,6 +75,7 @@ class MotorAxis {
   double origin_steps_ = 0.0;  // where MPos is 0
   double encoder_origin_deg_ = 0.0;
   double home_error_deg_ = 0.0;
+  HomeSwitch home_switch_;
 };
 
 }  // namespace swivel::sim

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "hardware/lidar/scip.hpp"
 #include "hardware/sim/sim_time.hpp"
 
 namespace swivel::sim {
@@ -93,7 +94,7 @@ void ScipServer::serve(std::int64_t now_ns) {
   if (!client_.open()) accept_client();
   if (client_.open()) send_due_scans(now_ns);
   if (client_.open()) transmit(now_ns);
-  if (sensor_->reboot_requested() && outgoing_.empty()) reboot(now_ns);
+  if (sensor_->reboot_requested() && outgoing_.empty()) lose_power(options_.reboot_s, now_ns);
 }
 
 void ScipServer::accept_client() {
@@ -115,10 +116,20 @@ void ScipServer::disconnect() {
   sensor_->connect();
 }
 
-void ScipServer::reboot(std::int64_t now_ns) {
+void ScipServer::lose_power(double duration_s, std::int64_t now_ns) {
   disconnect();
   listener_.close();
-  back_at_ns_ = now_ns + ns_from_s(options_.reboot_s);
+  back_at_ns_ = now_ns + ns_from_s(duration_s);
+}
+
+void ScipServer::reset_connection() {
+  const linger at_once{1, 0};
+  ::setsockopt(client_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  disconnect();
+}
+
+void ScipServer::stall(double duration_s, std::int64_t now_ns) {
+  stalled_until_ns_ = now_ns + ns_from_s(duration_s);
 }
 
 void ScipServer::read_client(std::int64_t now_ns) {
@@ -146,6 +157,8 @@ void ScipServer::send_due_scans(std::int64_t now_ns) {
 
 void ScipServer::send_frame(std::string frame, std::int64_t now_ns) {
   if (close_when_sent_) return;
+  spoil(frame);
+  if (frame.empty()) return;
   const Misbehaviour& wrong = options_.misbehaviour;
   ++frames_;
   if (every(wrong.bad_sum_every, frames_)) frame[frame.size() / 2] ^= 1;
@@ -157,6 +170,24 @@ void ScipServer::send_frame(std::string frame, std::int64_t now_ns) {
   if (wrong.glue_frames > 1 && !every(wrong.glue_frames, frames_) && !close_when_sent_) return;
   outgoing_ += std::exchange(glued_, {});
   if (every(wrong.stall_every, frames_)) stalled_until_ns_ = now_ns + ns_from_s(wrong.stall_s);
+}
+
+// One kind after the other, each frame once.
+void ScipServer::spoil(std::string& frame) {
+  const auto due = [](int& count) { return count > 0 && count-- > 0; };
+  if (due(next_frames_.dropped)) {
+    frame.clear();
+  } else if (due(next_frames_.halved)) {
+    frame.resize(frame.size() / 2);
+  } else if (due(next_frames_.bad_sums)) {
+    frame[frame.size() / 2] ^= 1;
+  } else if (due(next_frames_.wrong_echoes)) {
+    frame[1] = frame[1] == 'D' ? 'E' : 'D';
+  } else if (due(next_frames_.refused)) {
+    frame.resize(frame.find('\n') + 1);
+    scip::append_text(frame, next_frames_.status);
+    frame += '\n';
+  }
 }
 
 void ScipServer::transmit(std::int64_t now_ns) {

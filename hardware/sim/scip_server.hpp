@@ -24,6 +24,16 @@ struct Misbehaviour {
   int close_every = 0;  // in the middle of the frame
 };
 
+// What becomes of the next frames, each kind at its own count; told while the bench runs.
+struct SpoiledFrames {
+  int dropped = 0;
+  int halved = 0;
+  int bad_sums = 0;
+  int wrong_echoes = 0;
+  int refused = 0;  // a status in place of the data
+  std::string status;
+};
+
 struct ScipServerOptions {
   int port = 0;  // 0: any free one
   double reboot_s = 1.0;
@@ -45,6 +55,12 @@ class ScipServer {
   std::int64_t next_event_ns() const;  // when serve() is due though nothing came
   void serve(std::int64_t now_ns);
 
+  // Faults from now on.
+  SpoiledFrames& next_frames() { return next_frames_; }
+  void stall(double duration_s, std::int64_t now_ns);
+  void reset_connection();  // as a router does that forgot it
+  void lose_power(double duration_s, std::int64_t now_ns);
+
   // Lines cast while the client read too slowly to be sent any.
   std::uint64_t scans_dropped() const { return scans_dropped_; }
 
@@ -54,9 +70,9 @@ class ScipServer {
   void read_client(std::int64_t now_ns);
   void send_due_scans(std::int64_t now_ns);
   void send_frame(std::string frame, std::int64_t now_ns);
+  void spoil(std::string& frame);
   void transmit(std::int64_t now_ns);
   void disconnect();
-  void reboot(std::int64_t now_ns);
 
   ScipServerOptions options_;
   ScipSensor* sensor_;
@@ -67,6 +83,7 @@ class ScipServer {
   int port_ = 0;
   std::string outgoing_;
   std::string glued_;
+  SpoiledFrames next_frames_;
   std::uint64_t frames_ = 0;
   std::uint64_t scans_dropped_ = 0;
   bool close_when_sent_ = false;

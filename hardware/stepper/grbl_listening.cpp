@@ -11,6 +11,7 @@ constexpr std::chrono::milliseconds kWriteTimeout{200};
 }  // namespace
 
 void GrblStepper::forget_connection() {
+  guard_.reset();  // the port's lock is also the guard's
   stream_.reset();
   garbage_before_ += parser_.garbage_lines();
   parser_ = GrblParser();

@@ -33,9 +33,8 @@ GrblStepper::~GrblStepper() {
 
 Outcome GrblStepper::connect() {
   forget_connection();
-  Result<ByteStream> opened = ByteStream::open(options_.address, options_.reply_timeout, stop_);
-  if (!opened) return Failure{opened.reason()};
-  stream_ = std::move(*opened);
+  Outcome opened = open_port();
+  if (!opened) return opened;
   Outcome banner = await_banner();
   if (!banner) return banner;
   if (firmware_.compare(0, 3, "1.1") != 0) {
@@ -43,6 +42,22 @@ Outcome GrblStepper::connect() {
                    "; load GRBL 1.1 into it"};
   }
   return read_settings();
+}
+
+Outcome GrblStepper::open_port() {
+  Result<ByteStream> opened = ByteStream::open(options_.address, options_.reply_timeout, stop_);
+  if (!opened) return Failure{opened.reason()};
+  stream_ = std::move(*opened);
+  if (options_.guard_program.empty()) return Done{};
+  Result<MotorGuard> guard = MotorGuard::start(options_.guard_program, stream_->descriptor());
+  if (!guard) return Failure{guard.reason()};
+  guard_ = std::move(*guard);
+  return Done{};
+}
+
+Outcome GrblStepper::check_guard() {
+  if (options_.guard_program.empty() || (guard_ && guard_->watches())) return Done{};
+  return Failure{"the motor's guard is gone: without it nothing moves"};
 }
 
 Outcome GrblStepper::await_banner() {
@@ -83,6 +98,9 @@ Outcome GrblStepper::read_settings() {
   Result<StepperSettings> settings = read_stepper_settings(setting_values_);
   if (!settings) return Failure{options_.address + ": " + settings.reason()};
   settings_ = std::move(*settings);
+  for (std::string& advice : advice_on_limits(options_.limits, settings_)) {
+    settings_.advice.push_back(std::move(advice));
+  }
   return Done{};
 }
 
@@ -100,6 +118,8 @@ Outcome GrblStepper::home() {
   homed_ = false;
   Outcome unlocked = unlock();
   if (!unlocked) return unlocked;
+  Outcome guarded = check_guard();
+  if (!guarded) return guarded;
   may_turn_ = true;
   Outcome found = find_home();
   if (!found && may_turn_) write(std::string(1, kGrblReset));  // nothing else ends homing
@@ -132,6 +152,8 @@ Outcome GrblStepper::check_move(double angle_deg, double speed_deg_s) const {
 Result<Turn> GrblStepper::move_to(double angle_deg, double speed_deg_s) {
   const Outcome allowed = check_move(angle_deg, speed_deg_s);
   if (!allowed) return Failure{allowed.reason()};
+  const Outcome guarded = check_guard();
+  if (!guarded) return Failure{guarded.reason()};
   Turn turn;
   turn.end_angle_deg = whole_steps_deg(options_.limits, settings_, angle_deg);
   const double machine_deg =

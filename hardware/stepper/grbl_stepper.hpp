@@ -17,6 +17,7 @@
 
 #include "hardware/io/byte_stream.hpp"
 #include "hardware/stepper/grbl.hpp"
+#include "hardware/stepper/motor_guard.hpp"
 #include "hardware/stepper/stepper_settings.hpp"
 
 namespace swivel {
@@ -24,6 +25,7 @@ namespace swivel {
 struct GrblStepperOptions {
   std::string address;  // as ByteStream::open takes it
   TurnLimits limits;
+  std::string guard_program;  // stops the motor should this process die; empty: nothing does
   std::chrono::milliseconds banner_timeout{2500};  // an Arduino's boot loader takes 2 s
   std::chrono::milliseconds reply_timeout{1000};
   std::chrono::milliseconds status_timeout{500};
@@ -77,6 +79,8 @@ class GrblStepper {
   using Milliseconds = std::chrono::milliseconds;
   enum class Heard { kYes, kSilence, kInterrupted, kLost };
 
+  Outcome open_port();
+  Outcome check_guard();
   Outcome write(std::string_view bytes);
   Heard listen(Milliseconds timeout, const std::function<bool()>& heard, const WakeUp* stop);
   void pause_listening(Milliseconds pause, const WakeUp* stop);
@@ -98,6 +102,7 @@ class GrblStepper {
   GrblStepperOptions options_;
   const WakeUp* stop_;
   std::optional<ByteStream> stream_;
+  std::optional<MotorGuard> guard_;  // of that port
   std::string lost_reason_;
   GrblParser parser_;
   StepperSettings settings_;

@@ -61,7 +61,9 @@ bool is_off(const std::map<int, double>& values, int number) {
 std::vector<std::string> advice_on(const std::map<int, double>& values) {
   std::vector<std::string> advice;
   if (is_off(values, 20)) {
-    advice.emplace_back("soft limits are off: with $20=1 the controller guards the cable too");
+    advice.emplace_back(
+        "soft limits are off: with $20=1 and $130 as long as the cable the controller guards it "
+        "too");
   }
   const auto hold = values.find(1);
   if (hold != values.end() && hold->second < 255.0) {
@@ -69,6 +71,11 @@ std::vector<std::string> advice_on(const std::map<int, double>& values) {
                      " ms after each turn and may slip; $1=255 holds it");
   }
   return advice;
+}
+
+// GRBL takes float from text: a speed right at the limit is not beyond it.
+bool is_beyond(double speed_deg_s, double limit_deg_s) {
+  return !(speed_deg_s <= limit_deg_s * (1.0 + 1e-6));
 }
 
 Outcome check_speed(const TurnLimits& limits, const StepperSettings& settings, double speed_deg_s) {
@@ -81,8 +88,11 @@ Outcome check_speed(const TurnLimits& limits, const StepperSettings& settings, d
                    text(limits.minimum_step_rate_hz / settings.steps_per_deg) +
                    " deg/s or more, or a finer microstep"};
   }
-  // GRBL takes float from text: a speed right at the limit is not beyond it.
-  if (!(speed_deg_s <= settings.max_speed_deg_s * (1.0 + 1e-6))) {
+  if (is_beyond(speed_deg_s, limits.max_speed_deg_s)) {
+    return Failure{text(speed_deg_s) + " deg/s is beyond the rig's " +
+                   text(limits.max_speed_deg_s) + " deg/s (max_speed_deg_s)"};
+  }
+  if (is_beyond(speed_deg_s, settings.max_speed_deg_s)) {
     return Failure{text(speed_deg_s) + " deg/s is beyond the controller's " +
                    text(settings.max_speed_deg_s) +
                    " deg/s ($110=" + text(settings.max_speed_deg_s * 60.0) +
@@ -102,8 +112,27 @@ Result<StepperSettings> read_stepper_settings(const std::map<int, double>& value
   settings.acceleration_deg_s2 = values.at(120);
   settings.travel_deg = values.at(130);
   settings.pull_off_deg = values.at(27);
+  settings.soft_limits = !is_off(values, 20);
   settings.advice = advice_on(values);
   return settings;
+}
+
+std::vector<std::string> advice_on_limits(const TurnLimits& limits,
+                                          const StepperSettings& settings) {
+  std::vector<std::string> advice;
+  const double reach_deg = settings.travel_deg - settings.pull_off_deg;
+  if (settings.soft_limits && reach_deg > limits.cable_limit_deg + 0.5 / settings.steps_per_deg) {
+    advice.push_back("the controller lets the shaft turn " + text(reach_deg) +
+                     " deg from the home switch, the cable only " + text(limits.cable_limit_deg) +
+                     " deg: with $130=" + text(limits.cable_limit_deg + settings.pull_off_deg) +
+                     " it guards the cable too");
+  }
+  if (is_beyond(settings.max_speed_deg_s, limits.max_speed_deg_s)) {
+    advice.push_back("the controller turns up to " + text(settings.max_speed_deg_s) +
+                     " deg/s, the rig may up to " + text(limits.max_speed_deg_s) +
+                     " deg/s: send $110=" + text(limits.max_speed_deg_s * 60.0));
+  }
+  return advice;
 }
 
 Outcome check_turn(const TurnLimits& limits, const StepperSettings& settings,

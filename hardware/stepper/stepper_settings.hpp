@@ -1,6 +1,7 @@
 // What the controller's settings say about the motion, and what a turn may be.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct StepperSettings {
   double acceleration_deg_s2 = 0.0;  // $120
   double travel_deg = 0.0;           // $130
   double pull_off_deg = 0.0;         // $27
+  bool soft_limits = false;          // $20
   std::vector<std::string> advice;   // what works, but would be better otherwise
 };
 
@@ -28,7 +30,12 @@ struct TurnLimits {
   double home_angle_deg = 0.0;         // axis angle of the home switch
   double cable_limit_deg = 330.0;      // never further than this from the home switch
   double minimum_step_rate_hz = 30.0;  // GRBL turns faster than told below this
+  double max_speed_deg_s = std::numeric_limits<double>::infinity();
 };
+
+// Where the controller by itself would let the shaft go further or faster than the rig may.
+std::vector<std::string> advice_on_limits(const TurnLimits& limits,
+                                          const StepperSettings& settings);
 
 // Whether the shaft may turn to the axis angle at this speed, the home switch being at machine
 // position `home_machine_deg`. The reason of a refusal has the numbers.

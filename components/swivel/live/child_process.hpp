@@ -21,6 +21,7 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   const std::string& name() const { return name_; }
+  pid_t id() const { return id_; }
 
   // How it ended, in words; none while it runs.
   std::optional<std::string> ended();

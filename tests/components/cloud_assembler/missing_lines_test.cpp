@@ -213,6 +213,44 @@ TEST(StopAndGo, AMissedWindowIsAMissingRow) {
   expect_same(stage.sweeps[0].cloud, expected_cloud(story, {8}));
 }
 
+// A killed assembler's successor was told of all sweeps that had been, and called them incomplete.
+TEST(LateStart, SweepsWhoseLinesAreGoneAreNotCalledIncomplete) {
+  for (const bool lines_come_first : {false, true}) {
+    Stage stage;
+    stage.check_after_s(0.0);
+    Story story;
+    Story present;
+    present.first_beam_ns += 60'000 * kMillisecondNs;
+    if (lines_come_first) stage.add_lines(present, -3, -2);
+    for (story.sweep_id = 3; story.sweep_id < 6; ++story.sweep_id) {
+      stage.add(story.axis());
+      stage.add(story.cruising());
+      stage.add(story.phase(msg::PHASE_DECELERATING));
+      story.first_beam_ns += 4'000 * kMillisecondNs;
+    }
+    present.sweep_id = 9;
+    if (!lines_come_first) stage.add_lines(present, -3, -2);
+    stage.add(present.axis());
+    stage.add(present.cruising());
+    stage.add_lines(present, -1, 12);
+    ASSERT_EQ(stage.sweeps.size(), 1U);
+    EXPECT_TRUE(stage.sweeps[0].sweep.complete());
+    EXPECT_EQ(stage.assembler.counters().sweeps_before_start, 3U);
+    stage.expect_counters_add_up();
+  }
+}
+
+TEST(LateStart, ASweepLaterOnWithoutLinesIsIncomplete) {
+  Stage stage;
+  stage.check_after_s(0.0);
+  stage.check_after_s(3.0);
+  const Story story;
+  stage.add(story.axis());
+  stage.add(story.cruising());
+  stage.add_lines(story, 20, 21);
+  expect_incomplete(stage, 12, "12 of 12 lines missing");
+}
+
 TEST_F(MissingLines, TheNextSweepClosesTheOneBefore) {
   Story next;
   next.sweep_id = 8;

@@ -68,6 +68,7 @@ TEST(RigFiles, EveryKeyMeansWhatItSays) {
   ASSERT_TRUE(rig.stepper);
   EXPECT_EQ(rig.stepper->home_angle_deg, -71.0);
   EXPECT_EQ(rig.stepper->cable_limit_deg, 331.0);
+  EXPECT_EQ(rig.stepper->max_speed_deg_s, 200.0);
   EXPECT_EQ(rig.stepper->return_speed_deg_s, 91.0);
   EXPECT_EQ(rig.stepper->settle_s, 0.25);
   EXPECT_EQ(rig.stepper->minimum_step_rate_hz, 31.0);

@@ -131,6 +131,19 @@ TEST(GrblStepper, RefusesToMoveBeforeHoming) {
   EXPECT_TRUE(peer.turns().empty());
 }
 
+TEST(GrblStepper, WithoutItsGuardNothingMoves) {
+  const GrblDouble peer;
+  GrblStepperOptions options = options_for(peer);
+  options.guard_program = "/does/not/exist";
+  EXPECT_THAT(GrblStepper(options).connect().reason(), HasSubstr("guard does not start"));
+  options.guard_program = "/bin/true";  // ends at once
+  GrblStepper stepper(options);
+  ASSERT_TRUE(soon([&] { return stepper.connect() && !stepper.home(); }));
+  const int homings = peer.homings();
+  EXPECT_THAT(stepper.home().reason(), HasSubstr("guard is gone"));
+  EXPECT_EQ(peer.homings(), homings);
+}
+
 TEST(GrblStepper, AHomingThatFindsNoSwitchSaysSoAndTheNextMayFindIt) {
   GrblDoubleOptions once;
   once.homing_alarm = 9;

@@ -5,6 +5,7 @@
 namespace swivel {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -58,6 +59,27 @@ TEST(StepperSettings, HomingOffIsRefusedAndSoftLimitsOffAreAdvisedAgainst) {
   EXPECT_THAT(read_stepper_settings(values)->advice, SizeIs(2));
   values[22] = 0;
   EXPECT_THAT(read_stepper_settings(values).reason(), HasSubstr("homing on"));
+}
+
+TEST(LimitsAdvice, IsGivenWhereTheControllerAllowsMoreThanTheRig) {
+  TurnLimits limits = kLimits;
+  limits.cable_limit_deg = 355.0;  // $130 less the pull-off
+  limits.max_speed_deg_s = 200.0;
+  EXPECT_THAT(advice_on_limits(limits, good_settings()), IsEmpty());
+  limits.cable_limit_deg = 350.0;
+  limits.max_speed_deg_s = 190.0;
+  EXPECT_THAT(advice_on_limits(limits, good_settings()),
+              ElementsAre(HasSubstr("$130=355"), HasSubstr("$110=11400")));
+}
+
+TEST(CheckTurn, TheRigsOwnSpeedLimitHoldsToo) {
+  TurnLimits limits = kLimits;
+  limits.max_speed_deg_s = 150.0;
+  const auto check_at = [&](double speed_deg_s) {
+    return check_turn(limits, good_settings(), kHomeMachineDeg, 0.0, speed_deg_s);
+  };
+  EXPECT_TRUE(check_at(150.0));
+  EXPECT_THAT(check_at(150.1).reason(), HasSubstr("the rig's 150 deg/s"));
 }
 
 TEST(CheckTurn, TheSpeedMustLieBetweenTheFloorAndTheControllersMaximum) {
