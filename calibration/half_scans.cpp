@@ -61,7 +61,7 @@ void for_each_ray(const SweepReadings& readings, const RayMask& left_out, const 
   for (std::size_t line = 0; line < readings.lines.size(); ++line) {
     const LineOfReadings& said = readings.lines[line];
     for (std::size_t beam = 0; beam < count; ++beam) {
-      const double range_m{said.ranges_m[beam]};
+      const auto range_m = static_cast<double>(said.ranges_m[beam]);
       if (!(range_m < kFurthestM)) continue;
       if (!left_out.empty() && left_out[line * count + beam] != 0) continue;
       const ShaftTurn shaft = beams.shaft_at(said, beam);
@@ -107,7 +107,7 @@ Cells cells_of(const SweepReadings& readings, const std::vector<bool>& second,
                  if (!cell.normal) return;
                  cell.views[second[line] ? 1 : 0].moves +=
                      beams.moves_along(shaft.to_turning(*cell.normal), readings.lines[line], beam,
-                                       double{readings.lines[line].ranges_m[beam]});
+                                       static_cast<double>(readings.lines[line].ranges_m[beam]));
                });
   return cells;
 }

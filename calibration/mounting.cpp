@@ -29,7 +29,7 @@ OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& be
   for (std::size_t index = 0; index < readings.lines.size(); ++index) {
     const LineOfReadings& line = readings.lines[index];
     for (std::size_t beam = 0; beam < readings.beams(); ++beam) {
-      const double range_m{line.ranges_m[beam]};
+      const auto range_m = static_cast<double>(line.ranges_m[beam]);
       const Eigen::Vector3f point =
           beams.shaft_at(line, beam).to_rest(beams.turning_point(beam, range_m)).cast<float>();
       cloud.line(index)[beam] = {point.x(), point.y(), point.z(), 0.0F};

@@ -67,7 +67,7 @@ class LineSighter {
     for (std::size_t beam = 0; beam < rays.size(); ++beam) {
       if (std::isnan(line.ranges_m[beam])) continue;
       if (line.angle_per_beam_rad != 0.0) turn(beams_.shaft_at(line, beam));
-      rays[beam] = sight(beam, double{line.ranges_m[beam]});
+      rays[beam] = sight(beam, static_cast<double>(line.ranges_m[beam]));
     }
     return rays;
   }

@@ -15,7 +15,7 @@ double median_range_m(const SweepReadings& readings) {
   if (ranges_m.empty()) return 0.0;
   const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
   std::nth_element(ranges_m.begin(), middle, ranges_m.end());
-  return double{*middle};
+  return static_cast<double>(*middle);
 }
 
 }  // namespace swivel

@@ -130,8 +130,8 @@ RayPairs pairs_of(const SweepReadings& readings, double centreline_rad) {
     const auto other = static_cast<std::size_t>(opposite);
     for (std::size_t line = 0; line < readings.lines.size(); ++line) {
       const LineOfReadings& said = readings.lines[line];
-      const double first_m{said.ranges_m[beam]};
-      const double second_m{said.ranges_m[other]};
+      const auto first_m = static_cast<double>(said.ranges_m[beam]);
+      const auto second_m = static_cast<double>(said.ranges_m[other]);
       if (std::isnan(first_m) || std::isnan(second_m)) continue;
       const double axis_rad =
           said.axis_angle_rad + 0.5 * static_cast<double>(beam + other) * said.angle_per_beam_rad;
