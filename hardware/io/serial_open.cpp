@@ -78,6 +78,7 @@ Outcome set_up(int descriptor, speed_t speed) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return Failure{open_reason(errno)};
   const int error = make_raw(descriptor, speed);
   if (error != 0) return Failure{"the line cannot be set up: " + open_reason(error)};
+  ::tcflush(descriptor, TCIFLUSH);  // what was said to whoever had it open before
   return Done{};
 }
 

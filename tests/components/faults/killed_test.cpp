@@ -75,7 +75,6 @@ TEST_F(Killed, NotButStoppedACorrectorHoldsNobodyUp) {
   EXPECT_TRUE(rig().await(msg::PHASE_IDLE));
   rig().signal("attitude_corrector", SIGCONT);
   EXPECT_TRUE(rig().await_attitude(sweep->sweep_id()));
-  expect_a_right_sweep(rig());
 }
 
 }  // namespace

@@ -44,10 +44,10 @@ class LidarFaults : public FaultSuite {
 };
 
 TEST_F(LidarFaults, APowerCycle) {
-  const auto sweep = sweep_with("lidar power-cycle 3");
+  const auto sweep = sweep_with("lidar power-cycle 2");
   EXPECT_TRUE(rig().await_error(kReader, "next attempt", 1.0));
   expect_incomplete_and_said(sweep);
-  expect_back_within_2_s(3.0);
+  expect_back_within_2_s(2.0);
   expect_a_right_sweep(rig());
 }
 

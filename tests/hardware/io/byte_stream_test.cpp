@@ -171,6 +171,18 @@ TEST(ByteStream, ADeviceIsOpenedByOneProgramAtATime) {
   EXPECT_TRUE(ByteStream::open(pty.address(), kLong));
 }
 
+// The banner of a controller's last life was taken for that of its present one, and the true one
+// for a reset.
+TEST(ByteStream, WhatWasSaidBeforeItWasOpenedIsNotHeard) {
+  const Pty pty;
+  { ASSERT_TRUE(ByteStream::open(pty.address(), kLong)); }
+  ASSERT_EQ(::write(pty.number(), "old\n", 4), 4);
+  auto stream = ByteStream::open(pty.address(), kLong);
+  ASSERT_TRUE(stream) << stream.reason();
+  ASSERT_EQ(::write(pty.number(), "new\n", 4), 4);
+  EXPECT_EQ(stream->read_some(kLong).bytes, "new\n");
+}
+
 // In a process of its own that gives up being root, whom nothing is denied.
 TEST(ByteStream, PermissionDeniedNamesTheGroup) {
   constexpr uid_t kNobody = 65534;
