@@ -27,8 +27,11 @@ using CellKey = std::int64_t;
 
 CellKey cell_at(const Eigen::Vector3d& point, double cell_m) {
   constexpr std::int64_t kMany = 1 << 20;
-  const auto step = [cell_m](double coordinate_m) {
-    return static_cast<std::int64_t>(std::floor(coordinate_m / cell_m)) + kMany / 2;
+  const auto step = [cell_m](double coordinate_m) -> std::int64_t {
+    const double steps = std::floor(coordinate_m / cell_m);
+    // What is nowhere, or too far for any room, lies at the rim: a fit that runs away may say so.
+    if (!(std::abs(steps) < kMany / 2.0)) return 0;
+    return static_cast<std::int64_t>(steps) + kMany / 2;
   };
   return (step(point.x()) * kMany + step(point.y())) * kMany + step(point.z());
 }
