@@ -10,8 +10,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kScanPeriod_s = 0.025;  // nominal: for how long a mode takes, in words
-
 const char* phase_word(msg::SweepPhase phase) {
   switch (phase) {
     case msg::PHASE_IDLE:
@@ -36,7 +34,8 @@ const char* phase_word(msg::SweepPhase phase) {
 ordered_json modes_json(const RigFile& rig) {
   ordered_json modes = ordered_json::array();
   for (const auto& [mode, lines] : rig.modes.lines)
-    modes.push_back({{"mode", mode}, {"lines", lines}, {"seconds", kScanPeriod_s * lines}});
+    modes.push_back(
+        {{"mode", mode}, {"lines", lines}, {"seconds", rig.modes.line_period_s * lines}});
   return modes;
 }
 
