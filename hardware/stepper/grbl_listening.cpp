@@ -7,6 +7,7 @@ namespace swivel {
 namespace {
 
 constexpr std::chrono::milliseconds kWriteTimeout{200};
+constexpr std::chrono::milliseconds kHangUpTimeout{1};
 
 }  // namespace
 
@@ -22,7 +23,9 @@ void GrblStepper::forget_connection() {
 
 Outcome GrblStepper::write(std::string_view bytes) {
   if (!stream_) return Failure{options_.address + ": not connected"};
-  return stream_->write_all(bytes, kWriteTimeout);
+  Outcome written = stream_->write_all(bytes, kWriteTimeout);
+  if (!written) pause_listening(kHangUpTimeout, nullptr);  // hears whether the other side is gone
+  return written;
 }
 
 GrblStepper::Heard GrblStepper::listen(Milliseconds timeout, const std::function<bool()>& heard,

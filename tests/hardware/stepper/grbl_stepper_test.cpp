@@ -278,6 +278,16 @@ TEST(GrblStepper, AnUnpluggedControllerIsLostAndCanBeConnectedAgain) {
   EXPECT_FALSE(rig.stepper.connect());
 }
 
+// When the first to notice was a write, not a read, the shaft stayed homed: seen once in CI.
+TEST(GrblStepper, IsLostToAWriteAsToARead) {
+  Homed rig;
+  ASSERT_TRUE(rig.stepper.move_to(200.0, 100.0));
+  rig.peer.unplug();
+  ASSERT_TRUE(soon([&] { return !rig.stepper.cancel(); }));
+  EXPECT_FALSE(rig.stepper.homed());
+  EXPECT_THAT(rig.stepper.halt().reason(), HasSubstr("gone"));
+}
+
 TEST(GrblStepper, AStopEndsHomingAtOnceAndTheMotorToo) {
   GrblDoubleOptions slow;
   slow.homing_s = 1e6;
