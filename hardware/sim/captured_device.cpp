@@ -38,8 +38,8 @@ CapturedDevice::CapturedDevice(std::string name, std::vector<Conversation> conve
 
 const std::vector<Exchange>& CapturedDevice::exchanges() const {
   static const std::vector<Exchange> none;
-  const bool under_way = next_conversation_ > 0 && next_conversation_ <= conversations_.size();
-  return under_way ? conversations_[next_conversation_ - 1].exchanges : none;
+  if (connections_ == 0 || conversations_.empty()) return none;
+  return conversations_[(connections_ - 1) % conversations_.size()].exchanges;
 }
 
 void CapturedDevice::power_up(std::int64_t now_ns) {
@@ -47,11 +47,11 @@ void CapturedDevice::power_up(std::int64_t now_ns) {
   output_.clear();
   last_standing_.clear();
   hangs_up_ = false;
-  if (!is_over()) ++next_conversation_;
+  const bool anew = connections_ > 0 && connections_ % conversations_.size() == 0;
+  if (anew)
+    on_news_(name_ + ": was connected to more often than captured: the capture begins anew");
+  if (!conversations_.empty()) ++connections_;
   begin(0, now_ns);
-  if (is_over()) {
-    on_news_(name_ + ": the capture is at its end; whoever connects now gets no answer");
-  }
 }
 
 void CapturedDevice::begin(std::size_t exchange, std::int64_t now_ns) {
@@ -65,8 +65,8 @@ void CapturedDevice::begin(std::size_t exchange, std::int64_t now_ns) {
 void CapturedDevice::align(std::int64_t captured_ns, std::int64_t now_ns) {
   if (exchange_ >= exchanges().size()) return;
   const Exchange& exchange = exchanges()[exchange_];
-  if (answer_ >= exchange.answers.size()) return;
-  const Answer& next = exchange.answers[answer_];
+  if (exchange.answers.empty()) return;
+  const Answer& next = exchange.answers[std::min(answer_, exchange.answers.size() - 1)];
   const std::int64_t behind_ns =
       captured_ns - (next.time_ns - (asked_ns_ + next.delay_ns - now_ns));
   if (std::abs(behind_ns) < kSmallStep_ns) {

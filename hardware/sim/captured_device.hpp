@@ -1,5 +1,5 @@
 // A device that says again what a captured one said, when it is asked the same, and as quickly. One
-// connection after the other, as they were captured.
+// connection after the other, as they were captured; after the last one the first.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace swivel::sim {
 
 class CapturedDevice : public SerialDevice {
  public:
-  // Told, in words, what is not as in the capture, and when it is at its end.
+  // Told, in words, what is not as in the capture, and when it begins anew.
   using OnNews = std::function<void(const std::string& words)>;
 
   // at_once: the characters that the device acts on without a line's end; the first is one that
@@ -38,7 +38,6 @@ class CapturedDevice : public SerialDevice {
   // What is streamed goes on with what was captured at that time, whether it is past or to come.
   void align(std::int64_t captured_ns, std::int64_t now_ns);
 
-  bool is_over() const { return next_conversation_ > conversations_.size(); }
   // The captured device hangs up now; once.
   bool takes_leave();
   std::uint64_t differences() const { return differences_; }
@@ -57,11 +56,11 @@ class CapturedDevice : public SerialDevice {
   const std::string at_once_;
   const OnNews on_news_;
   OnLine on_line_;
-  std::size_t next_conversation_ = 0;  // the one under way is before it
-  std::size_t exchange_ = 0;           // under way
-  std::size_t answer_ = 0;             // of it, the next
-  std::int64_t asked_ns_ = 0;          // when it began
-  std::string last_standing_;          // the last answer to the question how it stands
+  std::size_t connections_ = 0;
+  std::size_t exchange_ = 0;   // under way
+  std::size_t answer_ = 0;     // of it, the next
+  std::int64_t asked_ns_ = 0;  // when it began
+  std::string last_standing_;  // the last answer to the question how it stands
   std::string received_;
   std::string output_;
   bool hangs_up_ = false;

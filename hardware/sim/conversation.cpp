@@ -7,7 +7,8 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kHole_ns = 25 * kMillisecond_ns;
+constexpr std::int64_t kLongHole_ns = 300 * kMillisecond_ns;
+constexpr std::int64_t kClosedHole_ns = 25 * kMillisecond_ns;  // a scan
 
 // Puts the pieces of a capture together, one after the other.
 class Composer {
@@ -36,9 +37,16 @@ class Composer {
  private:
   void note_hole(std::uint64_t bytes, std::int64_t time_ns) {
     result_.bytes_missing += bytes;
-    // Both ways of a wire have their hole at the same time.
-    cut_ns_ += std::max<std::int64_t>(0, time_ns - last_ns_ - kHole_ns);
-    last_ns_ = time_ns;
+    if (time_ns - last_ns_ < kLongHole_ns) return;
+    // What came first is the acknowledgement.
+    std::vector<Answer>& answers = result_.exchanges.back().answers;
+    const std::size_t kept = std::min<std::size_t>(1, answers.size());
+    for (std::size_t answer = kept; answer < answers.size(); ++answer)
+      result_.bytes_left_out += answers[answer].bytes.size();
+    answers.resize(kept);
+    const std::int64_t acknowledged_ns = kept == 0 ? 0 : answers.front().delay_ns;
+    cut_ns_ = time_ns - kClosedHole_ns - acknowledged_ns - request_ns_;
+    last_ns_ = time_ns;  // the other way has its hole at the same time
   }
 
   void ask(std::int64_t time_ns, const std::string& bytes) {

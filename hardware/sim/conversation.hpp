@@ -29,16 +29,17 @@ struct Exchange {
 };
 
 struct Conversation {
-  std::vector<Exchange> exchanges;  // the first is the opening
-  std::uint64_t bytes_missing = 0;  // holes in the capture, either way
+  std::vector<Exchange> exchanges;   // the first is the opening
+  std::uint64_t bytes_missing = 0;   // holes in the capture, either way
+  std::uint64_t bytes_left_out = 0;  // streamed before a long hole
 };
 
 // Takes the next request from the front of `bytes`: up to a line's end, or one of the characters
 // that a device acts on at once. Empty if none is whole.
 std::string take_request(std::string& bytes, const std::string& at_once);
 
-// Pieces in order of time. What comes twice is taken once. A hole lasts a scan, however long it
-// was: who waits for the rest waits for nothing.
+// Pieces in order of time. What comes twice is taken once. A long hole is closed, since who waits
+// for what was in it would hang up: the stream begins after it.
 Conversation conversation_of(const std::vector<CapturedPiece>& pieces, std::int64_t opened_ns,
                              const std::string& at_once);
 

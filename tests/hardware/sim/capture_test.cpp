@@ -63,17 +63,37 @@ TEST(Conversation, IsTheSameHoweverTheBytesCameAndHoweverOften) {
   }
 }
 
-TEST(Conversation, AHoleIsCountedAndNotWaitedFor) {
-  std::vector<CapturedPiece> pieces(kTalk.begin(), kTalk.begin() + 3);
-  const std::int64_t hour_ns = 3'600'000'000'000;
-  pieces.push_back({Kind::kFromDevice, hour_ns, 124, "late"});
-  pieces.push_back({Kind::kFromDevice, hour_ns + 7'000, 128, "later"});
-  const Conversation conversation = conversation_of(pieces, 0, kGrblAtOnce);
-  EXPECT_EQ(conversation.bytes_missing, 100U);
+// A stream of scans, ten a second; those of [from, to) were not heard.
+Conversation stream_without(int from, int to) {
+  std::vector<CapturedPiece> pieces{{Kind::kToDevice, 1000, 0, "ME\n"},
+                                    {Kind::kFromDevice, 2000, 0, "ack!"}};
+  for (int scan = 0; scan < 100; ++scan) {
+    if (scan >= from && scan < to) continue;
+    const auto place = static_cast<std::uint64_t>(scan);
+    pieces.push_back({Kind::kFromDevice, 2000 + (scan + 1) * std::int64_t{100'000'000},
+                      4 * (place + 1), "scan"});
+  }
+  return conversation_of(pieces, 0, "");
+}
+
+TEST(Conversation, AShortHoleStaysOne) {
+  const Conversation conversation = stream_without(50, 51);
+  EXPECT_EQ(conversation.bytes_missing, 4U);
+  EXPECT_EQ(conversation.bytes_left_out, 0U);
   const std::vector<Answer>& answers = conversation.exchanges.back().answers;
-  ASSERT_EQ(answers.size(), 3U);
+  ASSERT_EQ(answers.size(), 100U);
+  EXPECT_EQ(answers[51].delay_ns - answers[50].delay_ns, 200'000'000);
+}
+
+TEST(Conversation, ALongHoleIsNotWaitedFor) {
+  const Conversation conversation = stream_without(10, 90);
+  EXPECT_EQ(conversation.bytes_missing, 320U);
+  EXPECT_EQ(conversation.bytes_left_out, 40U);
+  const std::vector<Answer>& answers = conversation.exchanges.back().answers;
+  ASSERT_EQ(answers.size(), 11U) << "the acknowledgement, and what was heard after the hole";
+  EXPECT_EQ(answers[0].bytes, "ack!");
   EXPECT_LT(answers[1].delay_ns, 100'000'000);
-  EXPECT_EQ(answers[2].delay_ns - answers[1].delay_ns, 7'000);
+  EXPECT_EQ(answers[2].delay_ns - answers[1].delay_ns, 100'000'000);
 }
 
 class CapturedDeviceTest : public testing::Test {
@@ -154,9 +174,9 @@ TEST_F(CapturedDeviceTest, SaysWhatIsNotAsInTheCapture) {
   EXPECT_EQ(news_[0], "stepper: '$X' was sent where the capture has '$H': no answer");
   EXPECT_THAT(news_[1], HasSubstr("is left out"));
   device_.power_up(now_ns_);
-  EXPECT_THAT(news_.back(), HasSubstr("at its end"));
-  EXPECT_EQ(ask("$H\n"), "");
-  EXPECT_EQ(ask(std::string(100'000, 'x')), "");
+  EXPECT_EQ(ask(std::string(100'000, 'x')), "hello");
+  EXPECT_THAT(news_.back(), HasSubstr("no line end"));
+  EXPECT_EQ(ask("$H\n"), "ok") << "anew";
 }
 
 // The pieces of one wire's first connection.
