@@ -12,6 +12,8 @@ namespace swivel::sim {
 namespace {
 
 constexpr std::size_t kLongestRequest = 1000;
+// Less than that is how computers are; to follow it would disturb who times the stream.
+constexpr std::int64_t kNegligible_ns = 50 * kMillisecond_ns;
 constexpr std::int64_t kSmallStep_ns = 300 * kMillisecond_ns;  // which no client takes amiss
 
 // As it can stand in a log.
@@ -69,6 +71,7 @@ void CapturedDevice::align(std::int64_t captured_ns, std::int64_t now_ns) {
   const Answer& next = exchange.answers[std::min(answer_, exchange.answers.size() - 1)];
   const std::int64_t behind_ns =
       captured_ns - (next.time_ns - (asked_ns_ + next.delay_ns - now_ns));
+  if (std::abs(behind_ns) < kNegligible_ns) return;
   if (std::abs(behind_ns) < kSmallStep_ns) {
     asked_ns_ -= behind_ns;
     return;
