@@ -2,6 +2,7 @@
 // scans, whoever asked for it.
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <deque>
 #include <iostream>
 #include <memory>
 
@@ -15,6 +16,7 @@ namespace swivel {
 namespace {
 
 constexpr auto kHintAfter = std::chrono::seconds(5);
+constexpr auto kMoreComesWithin = std::chrono::milliseconds(500);
 
 struct MapOptions {
   RecordedRunOptions source;
@@ -34,15 +36,24 @@ int map_recording(const MapOptions& options) {
   return run.exit_code();
 }
 
-// Of what comes; the last sweep is told to whoever begins to listen.
-void draw_what_comes(LiveSweeps& sweeps, int count, OutputFolder& output, SweepPictures& pictures,
-                     StopSignal& stop) {
+// The last sweeps are told to whoever begins to listen, one after the other, and then those that
+// come.
+void draw_what_comes(LiveSweeps& sweeps, std::size_t count, OutputFolder& output,
+                     SweepPictures& pictures, StopSignal& stop) {
   const auto start = std::chrono::steady_clock::now();
+  std::deque<ProcessedSweep> told;
   bool hinted = false;
-  while (output.sweeps() < static_cast<std::size_t>(count) && !stop.received()) {
-    const auto news = sweeps.wait(std::chrono::milliseconds(100));
+  while (output.sweeps() < count && !stop.received()) {
+    auto news = sweeps.wait(kMoreComesWithin);
     if (news && news->sweep && !news->sweep->cloud.points.empty())
-      output.add(*news->sweep, draw(pictures, *news->sweep));
+      told.push_back(std::move(*news->sweep));
+    if (told.size() > count - output.sweeps()) told.pop_front();
+    if (news) continue;
+    for (ProcessedSweep& sweep : told) {
+      sweep.index = output.sweeps();
+      output.add(sweep, draw(pictures, sweep));
+    }
+    told.clear();
     if (hinted || output.sweeps() > 0 || std::chrono::steady_clock::now() < start + kHintAfter)
       continue;
     std::cerr << "no sweep yet; is the rig up? see: swivel status; ask for a sweep with: swivel "
@@ -62,7 +73,7 @@ int map_live(const CommonOptions& common, const MapOptions& options, StopSignal&
   LiveSweeps sweeps(participant);
   sweeps.follow_all();
   participant.start();
-  draw_what_comes(sweeps, options.count, output, pictures, stop);
+  draw_what_comes(sweeps, static_cast<std::size_t>(options.count), output, pictures, stop);
   participant.stop();
   if (output.sweeps() == 0) throw ExitError(kExitTryAgain, "stopped before any sweep came");
   output.finish();

@@ -113,6 +113,9 @@ TEST(Capture, ServedAgainGivesTheSameSweep) {
     LiveRig rig(scratch, {"--seed", "3", "--home-time-s", "0.2", "--log-level", "error"});
     ChildProcess recorder("swivel", {"capture", "-o", capture, "--domain", rig.domain()});
     original = rig.scan();
+    EXPECT_EQ(
+        run_swivel(scratch, "map live -o " + scratch.file("map") + " --domain " + rig.domain()), 0);
+    EXPECT_GT(std::filesystem::file_size(scratch.file("map/top_view_00.png")), 10000U);
     recorder.ask_to_stop();
     ASSERT_TRUE(recorder.wait_or_kill(std::chrono::seconds(20)));
     EXPECT_EQ(recorder.exit_code(), 0);
