@@ -97,7 +97,8 @@ const std::vector<AnyTopic>& all_topics() {
                                             any(kCalibrationTopic),
                                             any(kCalibrationRequestTopic),
                                             any(kCalibrationProgressTopic),
-                                            any(kHealthTopic)};
+                                            any(kHealthTopic),
+                                            any(kWireTopic)};
   return topics;
 }
 

@@ -38,6 +38,7 @@ inline constexpr Topic<msg::CalibrationRequest> kCalibrationRequestTopic{"calibr
 inline constexpr Topic<msg::CalibrationProgress> kCalibrationProgressTopic{"calibration_progress",
                                                                            false};
 inline constexpr Topic<msg::Health> kHealthTopic{"health", false};
+inline constexpr Topic<msg::WireBytes> kWireTopic{"wire", false};
 
 template <class Message>
 struct TypeSupportOf;
@@ -76,6 +77,10 @@ struct TypeSupportOf<msg::CalibrationProgress> {
 template <>
 struct TypeSupportOf<msg::Health> {
   using Type = msg::HealthPubSubType;
+};
+template <>
+struct TypeSupportOf<msg::WireBytes> {
+  using Type = msg::WireBytesPubSubType;
 };
 template <>
 struct TypeSupportOf<PointCloud2> {

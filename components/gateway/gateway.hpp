@@ -8,10 +8,10 @@
 
 #include "components/common/health_reporter.hpp"
 #include "components/common/rig_file.hpp"
+#include "components/common/roll.hpp"
 #include "components/common/sweep_requester.hpp"
 #include "components/gateway/live_view.hpp"
 #include "components/gateway/server.hpp"
-#include "components/swivel/live/roll.hpp"
 
 namespace swivel {
 

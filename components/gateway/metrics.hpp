@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "components/swivel/live/roll.hpp"
+#include "components/common/roll.hpp"
 
 namespace swivel {
 

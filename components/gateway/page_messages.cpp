@@ -3,33 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/plate_beams.hpp"
-#include "components/swivel/live/health_json.hpp"
+#include "components/common/health_json.hpp"
+#include "components/common/phase_word.hpp"
 
 namespace swivel {
 namespace {
 
 using nlohmann::ordered_json;
-
-const char* phase_word(msg::SweepPhase phase) {
-  switch (phase) {
-    case msg::PHASE_IDLE:
-      return "ready";
-    case msg::PHASE_HOMING:
-      return "homing";
-    case msg::PHASE_ACCELERATING:
-      return "accelerating";
-    case msg::PHASE_CRUISING:
-      return "scanning";
-    case msg::PHASE_DECELERATING:
-      return "decelerating";
-    case msg::PHASE_RETURNING:
-      return "returning";
-    case msg::PHASE_FAULT:
-      return "fault";
-    default:
-      return "unknown";
-  }
-}
 
 ordered_json modes_json(const RigFile& rig) {
   ordered_json modes = ordered_json::array();

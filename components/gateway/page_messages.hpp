@@ -5,8 +5,8 @@
 #include <string>
 
 #include "components/common/rig_file.hpp"
+#include "components/common/roll.hpp"
 #include "components/gateway/live_view.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "hardware/result.hpp"
 
 namespace swivel {

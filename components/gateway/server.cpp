@@ -14,6 +14,7 @@ namespace {
 
 using boost::asio::ip::tcp;
 
+constexpr int kPortsTried = 100;
 constexpr auto kPauseAfterError = std::chrono::milliseconds(100);
 
 boost::asio::ip::address parsed_address(const std::string& text) {
@@ -59,9 +60,26 @@ class Server::Implementation {
     if (!error) acceptor_.bind(endpoint, error);
     if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
     if (!error) return;
+    const bool taken = error == boost::asio::error::address_in_use;
     throw ServerError("cannot listen on " + endpoint.address().to_string() + " port " +
-                      std::to_string(endpoint.port()) + ": " + error.message() +
-                      "; give another with --port");
+                      std::to_string(endpoint.port()) + ": " +
+                      (taken ? "it is taken, perhaps by the view of another rig; "
+                             : error.message() + "; give another with ") +
+                      "--port " + (taken ? free_port_after(endpoint) : ""));
+  }
+
+  // So that the user need not try them one after the other.
+  std::string free_port_after(tcp::endpoint endpoint) {
+    for (int more = 0; more < kPortsTried && endpoint.port() < UINT16_MAX; ++more) {
+      endpoint.port(static_cast<std::uint16_t>(endpoint.port() + 1));
+      boost::system::error_code error;
+      tcp::acceptor trial(context_);
+      trial.open(endpoint.protocol(), error);
+      if (!error) trial.set_option(tcp::acceptor::reuse_address(true), error);
+      if (!error) trial.bind(endpoint, error);
+      if (!error) return std::to_string(endpoint.port()) + " is free";
+    }
+    return "0 takes any that is free";
   }
 
   void accept() {

@@ -9,6 +9,7 @@
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/common/strict_yaml.hpp"
+#include "components/common/wire_publisher.hpp"
 #include "hardware/lidar/scip_client.hpp"
 
 namespace {
@@ -31,12 +32,13 @@ msg::ScanLine to_message(const LidarScan& scan) {
   return line;
 }
 
-ScipClientOptions client_options(const LidarSection& lidar) {
+ScipClientOptions client_options(const LidarSection& lidar, WireTap tap) {
   ScipClientOptions options;
   options.address = lidar.address;
   options.intensities = lidar.intensities;
   options.stamp_origin =
       lidar.stamp_at_rear_centre ? StampOrigin::kRearCentre : StampOrigin::kFirstBeam;
+  options.tap = std::move(tap);
   return options;
 }
 
@@ -113,10 +115,11 @@ void read(const CommonOptions& options, const std::string& address, StopSignal& 
   Participant participant(options.participant("hokuyo_reader", rig.rig));
   HealthReporter health(participant);
   Writer<msg::ScanLine> lines(participant, kScanLineTopic);
+  WirePublisher wire(participant, msg::WIRE_OF_LIDAR);
   LastWord last_word;
   health.watch_over([&] { return last_word.is_recent(); });
   ScipClient client(
-      client_options(lidar),
+      client_options(lidar, wire.tap()),
       [&](const LidarScan& scan) {
         last_word.note();
         lines.write(to_message(scan));
@@ -128,6 +131,7 @@ void read(const CommonOptions& options, const std::string& address, StopSignal& 
   participant.on_tick(std::chrono::milliseconds(500), [&] {
     count(client.counters(), lines, health);
     name_lidar(client.identity(), health);
+    health.set_counter("wire_messages_not_sent", wire.not_sent());
   });
   participant.start();
   std::thread session([&] { client.run(); });

@@ -282,4 +282,11 @@ void McapReader::complain(std::uint64_t position, const std::string& reason) {
   damage_.reasons.push_back(path_ + ": at byte " + std::to_string(position) + ": " + reason);
 }
 
+bool is_mcap(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(kMcapMagic.size(), '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return file.good() && start == kMcapMagic;
+}
+
 }  // namespace swivel

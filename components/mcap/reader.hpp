@@ -80,4 +80,7 @@ class McapReader {
   McapDamage damage_;
 };
 
+// By its first bytes.
+bool is_mcap(const std::string& path);
+
 }  // namespace swivel

@@ -3,10 +3,13 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
+#include "components/mcap/reader.hpp"
 #include "components/recording/case_folder.hpp"
 #include "components/recording/csv_recording.hpp"
+#include "components/recording/mcap_recording.hpp"
 #include "components/recording/recording_plan.hpp"
 
 namespace swivel {
@@ -15,14 +18,15 @@ std::int64_t RecordingPlan::line_duration_ns() const {
   return std::llround(static_cast<double>(facts.beams - 1) * line.beam_period_ns());
 }
 
+namespace {
+
 // Turns the plan into events, a line at a time.
-class Recording::Player {
+class PlanPlayer {
  public:
-  Player(RecordingPlan plan, std::string rig) : plan_(std::move(plan)), rig_(std::move(rig)) {
+  PlanPlayer(RecordingPlan plan, std::string rig) : plan_(std::move(plan)), rig_(std::move(rig)) {
     plan_.line.rig(rig_);
   }
 
-  const RecordingFacts& facts() const { return plan_.facts; }
   Result<std::optional<RecordedEvent>> next();
 
  private:
@@ -48,8 +52,6 @@ class Recording::Player {
   std::uint64_t sweeps_sent_ = 0;
 };
 
-namespace {
-
 msg::AxisSample axis_sample(std::int64_t time_ns, double angle_deg) {
   msg::AxisSample sample;
   sample.time_ns(time_ns);
@@ -66,9 +68,7 @@ std::vector<msg::AxisSample> turn(std::int64_t start_ns, double start_deg, std::
           axis_sample(end_ns + kHair_ns, end_deg + hair_deg)};
 }
 
-}  // namespace
-
-Result<std::optional<RecordedEvent>> Recording::Player::next() {
+Result<std::optional<RecordedEvent>> PlanPlayer::next() {
   while (events_.empty()) {
     if (line_ == plan_.lines.size()) return std::optional<RecordedEvent>();
     if (const Outcome played = play_line(); !played) return Failure{played.reason()};
@@ -78,7 +78,7 @@ Result<std::optional<RecordedEvent>> Recording::Player::next() {
   return event;
 }
 
-Outcome Recording::Player::play_line() {
+Outcome PlanPlayer::play_line() {
   const RecordedLine& recorded = plan_.lines[line_];
   const RecordedSweep* const sweep = sweep_ < plan_.sweeps.size() ? &plan_.sweeps[sweep_] : nullptr;
   if (sweep != nullptr && line_ == sweep->first_line) open_sweep(*sweep);
@@ -103,7 +103,7 @@ Outcome Recording::Player::play_line() {
   return Done{};
 }
 
-void Recording::Player::open_sweep(const RecordedSweep& sweep) {
+void PlanPlayer::open_sweep(const RecordedSweep& sweep) {
   const std::int64_t start_ns = window_start_ns(sweep);
   announce(sweep, msg::PHASE_CRUISING, start_ns);
   if (plan_.facts.axis_measured) return;
@@ -113,18 +113,18 @@ void Recording::Player::open_sweep(const RecordedSweep& sweep) {
             turn(sweep.first_beam_time_ns, 0.0, end_ns, sweep.speed_deg_s * turn_s), start_ns);
 }
 
-void Recording::Player::close_sweep(const RecordedSweep& sweep) {
+void PlanPlayer::close_sweep(const RecordedSweep& sweep) {
   announce(sweep, msg::PHASE_DECELERATING, window_end_ns(sweep));
   announce(sweep, msg::PHASE_IDLE, window_end_ns(sweep));
   ++sweep_;
 }
 
 // The window holds exactly the lines that the sweep should have.
-std::int64_t Recording::Player::window_start_ns(const RecordedSweep& sweep) const {
+std::int64_t PlanPlayer::window_start_ns(const RecordedSweep& sweep) const {
   return sweep.first_beam_time_ns - kHair_ns;
 }
 
-std::int64_t Recording::Player::window_end_ns(const RecordedSweep& sweep) const {
+std::int64_t PlanPlayer::window_end_ns(const RecordedSweep& sweep) const {
   const double lines = static_cast<double>(sweep.lines_expected - 1);
   const std::int64_t expected_ns =
       sweep.first_beam_time_ns + std::llround(lines * plan_.line.scan_period_ns());
@@ -132,8 +132,7 @@ std::int64_t Recording::Player::window_end_ns(const RecordedSweep& sweep) const 
   return std::max(expected_ns, last.beam0_time_ns) + plan_.line_duration_ns() + kHair_ns;
 }
 
-void Recording::Player::announce(const RecordedSweep& sweep, msg::SweepPhase phase,
-                                 std::int64_t time_ns) {
+void PlanPlayer::announce(const RecordedSweep& sweep, msg::SweepPhase phase, std::int64_t time_ns) {
   msg::Sweep message;
   message.rig(rig_);
   message.sequence_number(++sweeps_sent_);
@@ -152,8 +151,8 @@ void Recording::Player::announce(const RecordedSweep& sweep, msg::SweepPhase pha
   send(std::move(message), time_ns);
 }
 
-void Recording::Player::send_axis(msg::AxisSource source, std::vector<msg::AxisSample> samples,
-                                  std::int64_t time_ns) {
+void PlanPlayer::send_axis(msg::AxisSource source, std::vector<msg::AxisSample> samples,
+                           std::int64_t time_ns) {
   msg::Axis axis;
   axis.rig(rig_);
   axis.sequence_number(++axes_sent_);
@@ -163,30 +162,22 @@ void Recording::Player::send_axis(msg::AxisSource source, std::vector<msg::AxisS
 }
 
 template <class Message>
-void Recording::Player::send(Message message, std::int64_t time_ns) {
+void PlanPlayer::send(Message message, std::int64_t time_ns) {
   time_ns_ = std::max(time_ns_, time_ns);
   events_.push_back({time_ns_, std::move(message)});
 }
 
+}  // namespace
+
 Result<Recording> Recording::open(const std::string& path, const std::string& rig) {
+  if (is_mcap(path)) return open_mcap_recording(path);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(path, error);
   auto plan = folder ? plan_case_folder(path) : plan_csv_recording(path);
   if (!plan) return Failure{plan.reason()};
-  return Recording(std::make_unique<Player>(std::move(*plan), rig));
-}
-
-Recording::Recording(std::unique_ptr<Player> player) : player_(std::move(player)) {}
-Recording::Recording(Recording&&) noexcept = default;
-Recording& Recording::operator=(Recording&&) noexcept = default;
-Recording::~Recording() = default;
-
-const RecordingFacts& Recording::facts() const {
-  return player_->facts();
-}
-
-Result<std::optional<RecordedEvent>> Recording::next() {
-  return player_->next();
+  RecordingFacts facts = plan->facts;
+  const auto player = std::make_shared<PlanPlayer>(std::move(*plan), rig);
+  return Recording(std::move(facts), [player] { return player->next(); });
 }
 
 }  // namespace swivel

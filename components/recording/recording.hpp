@@ -1,7 +1,8 @@
 // A recording of a rig, played as the messages that its reader and sequencer would have sent,
 // so that assembler, corrector and calibrator run unchanged.
 //
-// Two kinds are read. Formats in full: the README beside each.
+// Three kinds are read. Formats in full: the README beside each of the last two.
+//   FILE.mcap     a live rig, by swivel record: the very messages, and the calibration
 //   FILE.csv.gz   real scanners: # metadata, then `stamp_ns;axis_angle_deg;ranges;intensities`
 //                 a line; the axis angle may be missing
 //   FOLDER        a case: meta.csv, lines.csv, ranges.u16, intensity.u16
@@ -12,7 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -23,14 +24,13 @@
 
 namespace swivel {
 
-struct RecordingPlan;
-
 struct RecordedEvent {
   std::int64_t time_ns = 0;  // when it would have been sent; never before the event before it
-  std::variant<msg::ScanLine, msg::Axis, msg::Sweep> message;
+  std::variant<msg::ScanLine, msg::Axis, msg::Sweep, msg::Calibration> message;
 };
 
 struct RecordingFacts {
+  std::string rig;            // that made it, by its topics; empty: not told
   std::string suggested_rig;  // file name in config/rigs without .yaml; empty: none suits
   std::string remark;         // what the user should know, in words; empty: nothing
   bool axis_measured = false;
@@ -54,21 +54,19 @@ struct RecordingFacts {
 class Recording {
  public:
   // Reads times and angles, and checks that all is whole. `rig` becomes the messages' key.
+  // That of a live rig has its own.
   static Result<Recording> open(const std::string& path, const std::string& rig = "swivel");
 
-  Recording(Recording&&) noexcept;
-  Recording& operator=(Recording&&) noexcept;
-  ~Recording();
-
-  const RecordingFacts& facts() const;
-
   // The next event; nothing at the end.
-  Result<std::optional<RecordedEvent>> next();
+  using Next = std::function<Result<std::optional<RecordedEvent>>()>;
+  Recording(RecordingFacts facts, Next next) : facts_(std::move(facts)), next_(std::move(next)) {}
+
+  const RecordingFacts& facts() const { return facts_; }
+  Result<std::optional<RecordedEvent>> next() { return next_(); }
 
  private:
-  class Player;
-  explicit Recording(std::unique_ptr<Player> player);
-  std::unique_ptr<Player> player_;
+  RecordingFacts facts_;
+  Next next_;
 };
 
 }  // namespace swivel

@@ -3,9 +3,11 @@
 #include <spdlog/spdlog.h>
 
 #include "components/common/health_reporter.hpp"
+#include "components/common/phase_word.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/common/strict_yaml.hpp"
+#include "components/common/wire_publisher.hpp"
 #include "components/stepper_sequencer/sequencer.hpp"
 
 namespace {
@@ -35,30 +37,6 @@ SequencerOptions sequencer_options(const RigFile& rig, const std::string& addres
   options.sweep.axis_measured = rig.axis_measured;
   if (rig.axis_measured) options.poll_interval_s = kMeasuringInterval_s;
   return options;
-}
-
-const char* phase_word(msg::SweepPhase phase) {
-  switch (phase) {
-    case msg::PHASE_IDLE:
-      return "idle";
-    case msg::PHASE_HOMING:
-      return "homing";
-    case msg::PHASE_ACCELERATING:
-      return "accelerating";
-    case msg::PHASE_CRUISING:
-      return "cruising";
-    case msg::PHASE_DECELERATING:
-      return "decelerating";
-    case msg::PHASE_RETURNING:
-      return "returning";
-    case msg::PHASE_FAULT:
-      return "fault";
-    case msg::PHASE_REFUSED:
-      return "refused";
-    case msg::PHASE_ASSEMBLED:
-      return "assembled";
-  }
-  return "unknown";
 }
 
 void tell(const msg::Sweep& sweep, HealthReporter& health) {
@@ -106,11 +84,13 @@ class Audience {
 
 void sequence(const CommonOptions& options, const std::string& address, StopSignal& stop) {
   const RigFile rig = load_rig_file(options.rig_file);
-  const SequencerOptions sequencer_settings = sequencer_options(rig, address);
+  SequencerOptions sequencer_settings = sequencer_options(rig, address);
   Participant participant(options.participant("stepper_sequencer", rig.rig));
   HealthReporter health(participant);
   Writer<msg::Sweep> sweeps(participant, kSweepTopic);
   Writer<msg::Axis> axis(participant, kAxisTopic);
+  WirePublisher wire(participant, msg::WIRE_OF_STEPPER);
+  sequencer_settings.stepper.tap = wire.tap();
   Audience audience;
   Sequencer sequencer(sequencer_settings,
                       {[&](const msg::Sweep& sweep) {
@@ -122,7 +102,7 @@ void sequence(const CommonOptions& options, const std::string& address, StopSign
       kSweepRequestTopic, [&](const auto& request) { sequencer.request(request); });
   participant.on_tick(std::chrono::milliseconds(200), [&] {
     audience.check(sweeps.reader_count(), sequencer);
-    health.set_counter("messages_not_sent", sweeps.failures() + axis.failures());
+    health.set_counter("messages_not_sent", sweeps.failures() + axis.failures() + wire.not_sent());
     report(sequencer, health);
   });
   participant.start();

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   add_export(app, verb);
   add_mcap_verbs(app, verb);
   add_process(app, verb);
+  add_map(app, stop, verb);
   add_report(app, stop, verb);
   add_view(app, verb);
   add_doctor(app, verb);

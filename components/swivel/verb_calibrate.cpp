@@ -9,9 +9,9 @@
 #include "components/alpha_calibrator/alpha_calibration.hpp"
 #include "components/common/calibration_file.hpp"
 #include "components/common/program.hpp"
+#include "components/common/roll.hpp"
 #include "components/swivel/live/calibrate_live.hpp"
 #include "components/swivel/live/participants.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "components/swivel/offline/offline_pipeline.hpp"
 #include "components/swivel/offline/recorded_mounting.hpp"
 #include "components/swivel/offline/text_file.hpp"
@@ -50,7 +50,7 @@ int calibrate_alpha(const CalibrateOptions& options) {
                                options.least_sweeps, options.sigma_deg});
   make_folder(options.folder);
 
-  run_offline(std::move(recording), rig, std::nullopt, [&](const ProcessedSweep& processed) {
+  run_offline_as_drawn(recording, rig, [&](const ProcessedSweep& processed) {
     const std::string name = std::to_string(processed.index);
     const auto added = alpha.add(processed.attitude, processed.raw, name);
     std::cout << "sweep " << name << ": " << (added.used ? "" : "left out: ") << added.words
@@ -93,8 +93,9 @@ void add_calibrate_mounting(CLI::App& calibrate, StopSignal& stop, Verb& chosen)
   const auto recorded = std::make_shared<RecordedMountingOptions>();
   live->mode = 2;
   live->count = 2;
-  auto* const recording = verb->add_option("recording", recorded->recording,
-                                           "A case folder, or a .csv.gz recording; else live");
+  auto* const recording =
+      verb->add_option("recording", recorded->recording,
+                       "An .mcap or .csv.gz recording, or a case folder; else live");
   recording->needs(
       verb->add_option("-o,--output", recorded->folder,
                        "The folder for mounting.json and calibration.yaml, of a recording"));
@@ -126,8 +127,9 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
       calibrate->add_subcommand("alpha", "The plate's azimuth, from the walls of a room");
   const auto common = std::make_shared<CommonOptions>();
   const auto options = std::make_shared<CalibrateOptions>();
-  auto* const recording = verb->add_option("recording", options->recording,
-                                           "A case folder of the plate rig; without it, live");
+  auto* const recording =
+      verb->add_option("recording", options->recording,
+                       "Of the plate rig: .mcap or a case folder; without it, live");
   recording->needs(
       verb->add_option("-o,--output", options->folder,
                        "The folder for calibration.yaml; live, alpha_calibrator has it"));

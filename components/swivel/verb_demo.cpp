@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "components/common/calibration_file.hpp"
+#include "components/common/roll.hpp"
 #include "components/swivel/live/calibrate_live.hpp"
 #include "components/swivel/live/live_axis.hpp"
 #include "components/swivel/live/participants.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "components/swivel/live/scan.hpp"
 #include "components/swivel/live/truth_file.hpp"
 #include "components/swivel/offline/text_file.hpp"

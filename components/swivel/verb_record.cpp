@@ -1,15 +1,19 @@
 // swivel record: topics into an MCAP file, byte for byte.
+// swivel capture: likewise, what passes between the computer and the devices.
 #include <signal.h>
+#include <spdlog/fmt/fmt.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <thread>
 
+#include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/swivel/recorder/recorder.hpp"
 #include "components/swivel/recorder/topics_named.hpp"
@@ -75,6 +79,20 @@ void print(const RecorderSummary& summary) {
   }
 }
 
+// Of a rig's misbehaviour: both wires, what was asked of it and what it said of itself. Lines and
+// clouds follow from the bytes.
+std::vector<std::string> topics_of_a_capture() {
+  return {kWireTopic.name,  kHealthTopic.name,      kSweepRequestTopic.name,
+          kSweepTopic.name, kCalibrationTopic.name, kAxisTopic.name};
+}
+
+bool has_wire(const RecorderSummary& summary) {
+  return std::any_of(summary.topics.begin(), summary.topics.end(), [](const auto& topic) {
+    const auto known = find_topic(topic.first);
+    return known && known->topic.is(kWireTopic);
+  });
+}
+
 int judge(const RecorderSummary& summary, const RecordOptions& options) {
   const TopicCount total = summary.total();
   if (!summary.failure.empty()) {
@@ -83,6 +101,10 @@ int judge(const RecorderSummary& summary, const RecordOptions& options) {
   if (total.messages == 0) {
     throw ExitError(kExitUnavailable,
                     "nothing came: is the rig up, in this --domain and --network?");
+  }
+  if (options.topics == topics_of_a_capture() && !has_wire(summary)) {
+    throw ExitError(kExitUnavailable,
+                    "nothing came of the wires: do hokuyo_reader or stepper_sequencer run?");
   }
   if (options.last_s > 0 && summary.files.empty()) {
     throw ExitError(kExitUnavailable, "nothing was written: no trigger (SIGUSR1) came");
@@ -112,26 +134,40 @@ int record(const CommonOptions& common, const RecordOptions& options, StopSignal
   return judge(summary, options);
 }
 
-}  // namespace
-
-void add_record(CLI::App& app, StopSignal& stop, Verb& chosen) {
-  CLI::App* const verb = app.add_subcommand("record", "Records topics into an MCAP file");
+void add_recording_verb(CLI::App& app, const char* name, const char* purpose, StopSignal& stop,
+                        Verb& chosen, const std::vector<std::string>& topics) {
+  CLI::App* const verb = app.add_subcommand(name, purpose);
   const auto common = std::make_shared<CommonOptions>();
   const auto options = std::make_shared<RecordOptions>();
-  verb->add_option("topics", options->topics, "scan_line, cloud, ...; none: all");
+  options->topics = topics;
+  if (topics.empty()) {
+    verb->add_option("topics", options->topics, "scan_line, cloud, ...; none: all but wire");
+    // The last seconds of a wire would not tell how its connection began.
+    verb->add_option("--last", options->last_s,
+                     "Keep the last so many seconds, and write them at each SIGUSR1")
+        ->check(CLI::Range(1, 3600));
+  }
   verb->add_option("-o,--output", options->path, "FILE.mcap; FILE.mcap.part until it is closed")
       ->required();
   verb->add_option("--split-mb", options->split_mb, "A new file FILE_1.mcap, ... from this size on")
       ->check(CLI::Range(1, 1 << 20));
-  verb->add_option("--last", options->last_s,
-                   "Keep the last so many seconds, and write them at each SIGUSR1")
-      ->check(CLI::Range(1, 3600));
   verb->add_option("--margin-mb", options->margin_mb, "Stop when less is free on the disk")
       ->check(CLI::Range(0, 1 << 20))
       ->capture_default_str();
   add_common_options(*verb, *common);
   verb->callback(
       [=, &stop, &chosen] { chosen = [=, &stop] { return record(*common, *options, stop); }; });
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, StopSignal& stop, Verb& chosen) {
+  add_recording_verb(app, "record", "Records topics into an MCAP file", stop, chosen, {});
+  add_recording_verb(
+      app, "capture",
+      "Records what passes between the computer, the lidar and the stepper, byte for byte: for "
+      "a bug report, and for swivel-bench --replay-capture",
+      stop, chosen, topics_of_a_capture());
 }
 
 }  // namespace swivel

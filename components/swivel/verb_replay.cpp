@@ -10,8 +10,11 @@
 #include <optional>
 
 #include "components/common/program.hpp"
+#include "components/mcap/reader.hpp"
+#include "components/recording/mcap_recording.hpp"
 #include "components/swivel/offline/offline_pipeline.hpp"
 #include "components/swivel/recorder/player.hpp"
+#include "components/swivel/recorder/repetition.hpp"
 #include "components/swivel/recorder/topics_named.hpp"
 #include "components/swivel/verbs.hpp"
 
@@ -107,8 +110,9 @@ class Pace {
   steady_clock::time_point start_ = steady_clock::now();
 };
 
-void play(const ReplaySource& source, const ReplayOptions& options, Player& player,
-          StopSignal& stop) {
+void play(const ReplaySource& source, const ReplayOptions& options, Repetition& repetition,
+          Player& player, StopSignal& stop) {
+  repetition.begin_round();
   Pace pace(options.rate, options.as_fast_as_possible);
   while (!stop.received()) {
     const auto message = source();
@@ -118,7 +122,7 @@ void play(const ReplaySource& source, const ReplayOptions& options, Player& play
     }
     if (!message->has_value()) break;
     pace.await((*message)->time_ns, stop);
-    player.play(**message);
+    player.play(options.loop ? repetition.next(**message) : **message);
   }
   player.finish();
 }
@@ -133,8 +137,9 @@ int replay(const CommonOptions& common, bool rig_given, const ReplayOptions& opt
   Player player(participant, replay.topics);
   participant.start();
   await_readers(player, options.wait_s, stop);
+  Repetition repetition;
   do {
-    play(replay.open(), options, player, stop);
+    play(replay.open(), options, repetition, player, stop);
   } while (options.loop && !stop.received());
   participant.stop();
   std::cout << player.in_words() << std::endl;
@@ -155,7 +160,8 @@ void add_replay(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
   verb->add_flag("--max", options->as_fast_as_possible, "As fast as the readers can follow");
-  verb->add_flag("--loop", options->loop, "Again and again, until stopped");
+  verb->add_flag("--loop", options->loop,
+                 "Again and again until stopped, each time as sweeps of their own");
   verb->add_option("--from", options->window.from_s, "Of an .mcap file: from so many seconds on");
   verb->add_option("--to", options->window.to_s, "Of an .mcap file: up to so many seconds");
   verb->add_option("--topics", options->topics,

@@ -5,79 +5,55 @@
 #include <iostream>
 #include <memory>
 
-#include "components/common/calibration_file.hpp"
 #include "components/common/program.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "components/swivel/live/scan.hpp"
-#include "components/swivel/offline/offline_pipeline.hpp"
 #include "components/swivel/report/sweep_evaluator.hpp"
+#include "components/swivel/source_options.hpp"
 #include "components/swivel/verbs.hpp"
 
 namespace swivel {
 namespace {
 
 struct ReportOptions {
-  std::string source;
-  std::string folder;
-  std::string rig_file;  // empty: that which suits
-  std::string calibration_file;
+  RecordedRunOptions source;
   std::string truth_file;
-  ScanOptions scan;
+  ScanOptions scan;  // live
 };
-
-constexpr const char* kLive = "live";
-constexpr OutputKinds kNoClouds{true, false};
 
 // The file asked for, or the one beside the recording; else nothing.
 std::optional<AttitudeTruth> truth_of(const ReportOptions& options) {
   if (!options.truth_file.empty()) return AttitudeTruth(options.truth_file);
-  const std::filesystem::path beside = std::filesystem::path(options.source) / "truth.csv";
-  if (options.source == kLive || !std::filesystem::exists(beside)) return std::nullopt;
+  const std::filesystem::path beside =
+      std::filesystem::path(options.source.recording) / "truth.csv";
+  if (options.source.recording == kLive || !std::filesystem::exists(beside)) return std::nullopt;
   return AttitudeTruth(beside);
 }
 
 void conclude(const ReportOptions& options, SweepEvaluator& evaluator, OutputFolder& output) {
   evaluator.finish(truth_of(options), output);
   output.finish();
-  std::cout << "see " << options.folder << "/report.html, report.json" << std::endl;
+  std::cout << "see " << options.source.folder << "/report.html, report.json" << std::endl;
 }
 
 int report_recording(const ReportOptions& options) {
-  Recording recording = open_recording(options.source);
-  const RecordingFacts facts = recording.facts();
-  const RigFile rig = rig_of(facts, options.source, options.rig_file);
-  std::optional<msg::Calibration> calibration;
-  if (!options.calibration_file.empty()) calibration = load_calibration(options.calibration_file);
-  const std::string title = std::filesystem::path(options.source).lexically_normal().filename();
-
-  OutputFolder output(options.folder, title, rig, kNoClouds);
-  output.note("recording", options.source);
-  output.note("calibration_file", options.calibration_file);
-  SweepEvaluator evaluator(options.folder, title, rig,
-                           facts.plate ? facts.plate->room_yaw_deg : 0.0);
-  run_offline(std::move(recording), rig, calibration, [&](const ProcessedSweep& processed) {
-    output.add(processed, evaluator.add(processed));
-  });
-  conclude(options, evaluator, output);
-  return output.sweeps() == facts.modes.size() ? kExitOk : kExitInternal;
+  RecordedRun run(options.source);
+  SweepEvaluator evaluator(options.source.folder, run.title(), run.rig(), run.room_yaw_deg());
+  run.run([&](const ProcessedSweep& processed) { return evaluator.add(processed); });
+  conclude(options, evaluator, run.output());
+  return run.exit_code();
 }
 
 int report_live(const CommonOptions& common, const ReportOptions& options, StopSignal& stop) {
   start_log("swivel", common.log_level == "info" ? "warning" : common.log_level);
-  if (!options.calibration_file.empty())
+  if (!options.source.calibration_file.empty())
     throw ExitError(kExitUsage, "--calibration is for recordings; a live rig has its own");
   const RigFile rig = load_rig_file(common.rig_file);
   check_mode(rig, options.scan.mode);
-  OutputFolder output(options.folder, rig.rig, rig, kNoClouds);
-  SweepEvaluator evaluator(options.folder, rig.rig, rig, 0.0);
-  Participant participant(common.participant("swivel_report", rig.rig));
-  const Roll roll(participant);
-  LiveSweeps sweeps(participant);
-  participant.start();
-  const std::string missing = roll.await(scanning_participants(), std::chrono::seconds(30));
-  if (!missing.empty()) throw ExitError(kExitUnavailable, missing + "; start them with: swivel up");
-  const int good = scan(sweeps, options.scan, output, stop,
-                        [&](const ProcessedSweep& processed) { return evaluator.add(processed); });
+  OutputFolder output(options.source.folder, rig.rig, rig, options.source.kinds);
+  SweepEvaluator evaluator(options.source.folder, rig.rig, rig, 0.0);
+  const int good =
+      scan_live(common.participant("swivel_report", rig.rig), options.scan, output, stop,
+                [&](const ProcessedSweep& processed) { return evaluator.add(processed); });
   conclude(options, evaluator, output);
   return good == options.scan.count ? kExitOk : kExitBadData;
 }
@@ -89,12 +65,8 @@ void add_report(CLI::App& app, StopSignal& stop, Verb& chosen) {
       app.add_subcommand("report", "Judges a recording or a live rig: numbers, pictures, a page");
   const auto common = std::make_shared<CommonOptions>();
   const auto options = std::make_shared<ReportOptions>();
-  verb->add_option("source", options->source,
-                   "A .csv.gz recording, a case folder, or the word live")
-      ->required();
-  verb->add_option("-o,--output", options->folder, "The folder to write to")->required();
-  verb->add_option("--calibration", options->calibration_file,
-                   "Recordings: a calibration.yaml [alpha as drawn]");
+  options->source.kinds.no_clouds = true;
+  add_source_options(*verb, options->source, true);
   verb->add_option("--truth", options->truth_file,
                    "What a simulator says of the sweeps [truth.csv in a case folder]");
   verb->add_option("--mode", options->scan.mode, "Live: of the sweeps")->capture_default_str();
@@ -103,10 +75,10 @@ void add_report(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->capture_default_str();
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
-    options->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    options->source.rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
     chosen = [=, &stop] {
-      return options->source == kLive ? report_live(*common, *options, stop)
-                                      : report_recording(*options);
+      return options->source.recording == kLive ? report_live(*common, *options, stop)
+                                                : report_recording(*options);
     };
   });
 }

@@ -3,7 +3,6 @@
 #include <CLI/Formatter.hpp>
 #include <memory>
 
-#include "components/swivel/live/roll.hpp"
 #include "components/swivel/live/scan.hpp"
 #include "components/swivel/verbs.hpp"
 
@@ -26,13 +25,8 @@ int run_scan(const CommonOptions& common, const ScanVerbOptions& options, StopSi
   const RigFile rig = load_rig_file(common.rig_file);
   check_mode(rig, options.scan.mode);
   OutputFolder output(options.folder, rig.rig, rig, options.kinds);
-  Participant participant(common.participant("swivel_scan", rig.rig));
-  const Roll roll(participant);
-  LiveSweeps sweeps(participant);
-  participant.start();
-  const std::string missing = roll.await(scanning_participants(), std::chrono::seconds(30));
-  if (!missing.empty()) throw ExitError(kExitUnavailable, missing + "; start them with: swivel up");
-  const int good = scan(sweeps, options.scan, output, stop);
+  const int good =
+      scan_live(common.participant("swivel_scan", rig.rig), options.scan, output, stop);
   output.finish();
   return good == options.scan.count ? kExitOk : kExitBadData;
 }

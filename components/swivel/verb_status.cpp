@@ -6,11 +6,11 @@
 #include <iostream>
 #include <memory>
 
+#include "components/common/health_json.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
-#include "components/swivel/live/health_json.hpp"
+#include "components/common/roll.hpp"
 #include "components/swivel/live/participants.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
 

@@ -46,6 +46,9 @@ void BenchCommandLine::add_files(CLI::App& app) {
   app.add_option("--log-level", log_level_, "What to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
       ->capture_default_str();
+  app.add_option("--replay-capture", capture_,
+                 "Instead of a world, say again what a lidar and a stepper said: a file of swivel "
+                 "capture");
   option<std::string>(app, "--stepper-link", "Make this symbolic link to the stepper's pty",
                       [](BenchOptions& b, const std::string& v) { b.stepper_link = v; });
   option<std::string>(app, "--truth", "Write what really happened to this CSV file",

@@ -20,6 +20,7 @@ class BenchCommandLine {
   // ConfigurationError.
   sim::BenchOptions options() const;
   const std::string& log_level() const { return log_level_; }
+  const std::string& capture() const { return capture_; }  // to be served again; empty: none
 
  private:
   using Change = std::function<void(sim::BenchOptions&)>;
@@ -47,6 +48,7 @@ class BenchCommandLine {
 
   std::string file_;
   std::string log_level_ = "info";
+  std::string capture_;
   std::vector<Change> changes_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "components/common/program.hpp"
 #include "components/swivel_bench/bench_options.hpp"
+#include "components/swivel_bench/capture_file.hpp"
 #include "hardware/io/wake_up.hpp"
 
 namespace {
@@ -15,7 +16,8 @@ namespace {
 using namespace swivel;
 
 // One line, for scripts and tests.
-void print_addresses(const sim::Bench& bench, const std::string& link) {
+template <class Bench>
+void print_addresses(const Bench& bench, const std::string& link) {
   std::cout << "lidar tcp://127.0.0.1:" << bench.port() << " stepper "
             << (link.empty() ? bench.stepper_path() : link) << std::endl;
 }
@@ -31,7 +33,9 @@ void log_losses(const sim::Bench& bench) {
 }
 
 // The bench runs on a thread of its own, since this one waits for the signal.
-int serve(sim::Bench& bench, StopSignal& stop) {
+template <class Bench>
+void serve(Bench& bench, const std::string& link, StopSignal& stop) {
+  print_addresses(bench, link);
   const WakeUp end;
   auto running = std::async(std::launch::async, [&] { bench.run(end); });
   const auto ended = [&] {
@@ -41,8 +45,17 @@ int serve(sim::Bench& bench, StopSignal& stop) {
   }
   end.notify();
   running.get();  // throws what the bench could not go on with
-  log_losses(bench);
-  return kExitOk;
+}
+
+void replay_capture(const std::string& path, const sim::BenchOptions& options, StopSignal& stop) {
+  auto capture = load_capture(path);
+  if (!capture) throw ExitError(kExitBadData, capture.reason());
+  for (const std::string& remark : capture->remarks) spdlog::info("{}", remark);
+  sim::CaptureBench bench({std::move(capture->lidar), std::move(capture->stepper),
+                           options.server.port, options.stepper_link},
+                          [](const std::string& words) { spdlog::warn("{}", words); });
+  serve(bench, options.stepper_link, stop);
+  spdlog::info("{} times something else was asked than in the capture", bench.differences());
 }
 
 }  // namespace
@@ -56,9 +69,16 @@ int main(int argc, char** argv) {
     start_log("swivel-bench", command_line.log_level());
     const sim::BenchOptions options = command_line.options();
     try {
+      if (!command_line.capture().empty()) {
+        replay_capture(command_line.capture(), options, stop);
+        return kExitOk;
+      }
       sim::Bench bench(options);
-      print_addresses(bench, options.stepper_link);
-      return serve(bench, stop);
+      serve(bench, options.stepper_link, stop);
+      log_losses(bench);
+      return kExitOk;
+    } catch (const ExitError&) {
+      throw;
     } catch (const std::exception& error) {
       throw ExitError(kExitUnavailable, error.what());
     }

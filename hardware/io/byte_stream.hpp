@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "hardware/io/wake_up.hpp"
+#include "hardware/io/wire_tap.hpp"
 #include "hardware/result.hpp"
 
 namespace swivel {
@@ -29,9 +30,10 @@ class ByteStream {
   //   tcp://HOST:PORT       HOST a name, 192.168.0.10 or [fe80::1]
   //   /dev/ttyACM0[@BAUD]   8N1 without flow control, 115200 unless BAUD says otherwise; DTR as
   //                         the system has it. Locked: a second program is refused
-  // A failure says what to do about it. Ends early when `wake_up` is notified.
+  // A failure says what to do about it. Ends early when `wake_up` is notified. `tap` sees all that
+  // passes from here on.
   static Result<ByteStream> open(const std::string& address, std::chrono::milliseconds timeout,
-                                 const WakeUp* wake_up = nullptr);
+                                 const WakeUp* wake_up = nullptr, WireTap tap = {});
 
   ByteStream(ByteStream&& other) noexcept;
   ByteStream& operator=(ByteStream&& other) noexcept;
@@ -48,11 +50,15 @@ class ByteStream {
   int descriptor() const { return descriptor_; }  // stays ours
 
  private:
-  ByteStream(int descriptor, bool is_socket, std::string address);
+  ByteStream(int descriptor, bool is_socket, std::string address, WireTap tap);
+  Received take(std::string bytes);
+  Received lost(Received how);
+  void tell(WireEvent::Kind kind, std::string_view bytes = {}) const;
 
   int descriptor_ = -1;
   bool is_socket_ = false;
   std::string address_;
+  WireTap tap_;
 };
 
 }  // namespace swivel

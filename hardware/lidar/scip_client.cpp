@@ -84,7 +84,7 @@ LidarCounters ScipClient::counters() const {
 std::string ScipClient::serve_connection() {
   report(LidarState::kConnecting, "connecting to " + options_.address);
   Result<scip::Session> session =
-      scip::Session::open(options_.address, options_.timeouts, &wake_up_);
+      scip::Session::open(options_.address, options_.timeouts, &wake_up_, options_.tap);
   if (!session) return session.reason();
   Result<Stream> stream = prepare(*session);
   if (!stream) {

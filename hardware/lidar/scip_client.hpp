@@ -68,6 +68,7 @@ struct ScipClientOptions {
   std::chrono::milliseconds shortest_backoff{500};
   std::chrono::milliseconds longest_backoff{1000};  // so that it is soon back once it can be
   int clock_readings = 20;
+  WireTap tap;  // of every connection
 };
 
 class ScipClient {

@@ -35,8 +35,8 @@ Session::Session(ByteStream stream, const SessionTimeouts& timeouts, const WakeU
     : stream_(std::move(stream)), timeouts_(timeouts), wake_up_(wake_up) {}
 
 Result<Session> Session::open(const std::string& address, const SessionTimeouts& timeouts,
-                              const WakeUp* wake_up) {
-  Result<ByteStream> stream = ByteStream::open(address, timeouts.connect, wake_up);
+                              const WakeUp* wake_up, WireTap tap) {
+  Result<ByteStream> stream = ByteStream::open(address, timeouts.connect, wake_up, std::move(tap));
   if (!stream) return Failure{stream.reason()};
   Session session(std::move(*stream), timeouts, wake_up);
   const Outcome quiet = session.stop_scans();

@@ -37,7 +37,7 @@ class Session {
   // Connects, and silences what may still be streaming. Every wait ends when `wake_up` is
   // notified, with a Failure.
   static Result<Session> open(const std::string& address, const SessionTimeouts& timeouts,
-                              const WakeUp* wake_up);
+                              const WakeUp* wake_up, WireTap tap = {});
 
   Result<LidarIdentity> identify();      // VV
   Result<Parameters> read_parameters();  // PP

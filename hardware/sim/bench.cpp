@@ -1,23 +1,11 @@
 #include "hardware/sim/bench.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <vector>
 
-#include "hardware/io/clock.hpp"
+#include "hardware/sim/poll_until.hpp"
 
 namespace swivel::sim {
-namespace {
-
-constexpr std::int64_t kLongestWaitNs = 100'000'000;
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-
-bool notified(const WakeUp& stop) {
-  pollfd wait{stop.descriptor(), POLLIN, 0};
-  return ::poll(&wait, 1, 0) > 0;
-}
-
-}  // namespace
 
 Bench::Bench(const BenchOptions& options)
     : start_ns_(now_ns()),
@@ -76,7 +64,7 @@ LineReading Bench::cast_scan(std::uint64_t scan) {
 }
 
 void Bench::run(const WakeUp& stop) {
-  while (!notified(stop)) {
+  while (!is_notified(stop)) {
     // The stepper first: what it is told at an instant counts for the beams from then on.
     const std::int64_t time_ns = now_ns();
     stepper_port_.serve(time_ns);
@@ -99,13 +87,7 @@ void Bench::wait(const WakeUp& stop) const {
   server_.add_to(waits, time_ns);
   stepper_port_.add_to(waits);
   control_.add_to(waits);
-  const std::int64_t until_ns =
-      std::min(server_.next_event_ns(), stepper_port_.next_event_ns(time_ns));
-  const std::int64_t wait_ns =
-      until_ns <= time_ns ? 0 : std::min(kLongestWaitNs, until_ns - time_ns);
-  const timespec timeout{static_cast<time_t>(wait_ns / kSecondNs),
-                         static_cast<long>(wait_ns % kSecondNs)};
-  ::ppoll(waits.data(), waits.size(), &timeout, nullptr);
+  poll_until(std::min(server_.next_event_ns(), stepper_port_.next_event_ns(time_ns)), waits);
 }
 
 }  // namespace swivel::sim

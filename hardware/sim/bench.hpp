@@ -7,6 +7,7 @@
 
 #include "hardware/io/wake_up.hpp"
 #include "hardware/sim/control_port.hpp"
+#include "hardware/sim/grbl_peer.hpp"
 #include "hardware/sim/grbl_port.hpp"
 #include "hardware/sim/scip_server.hpp"
 #include "hardware/sim/truth_file.hpp"

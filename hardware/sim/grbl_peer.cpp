@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t kReceiveBuffer = 127;  // 128 bytes, one of which marks its end
 constexpr std::size_t kLongestLine = 79;
 constexpr int kPlannerBlocks = 15;
+constexpr std::int64_t kBusyTick_ns = 2 * kMillisecond_ns;
 constexpr std::uint64_t kLatencyStream = 0x1A7E;
 constexpr char kReset = 0x18;
 constexpr char kJogCancel = static_cast<char>(0x85);
@@ -80,6 +81,10 @@ std::string GrblPeer::take_output() {
 bool GrblPeer::busy(std::int64_t now_ns) const {
   return !after_quiet_.empty() || reset_requested_ || status_requested_ || in_motion_state() ||
          axis_.moving(now_ns) || received_.find('\n') != std::string::npos;
+}
+
+std::int64_t GrblPeer::next_event_ns(std::int64_t now_ns) const {
+  return busy(now_ns) ? now_ns + kBusyTick_ns : kNever_ns;
 }
 
 bool GrblPeer::in_motion_state() const {

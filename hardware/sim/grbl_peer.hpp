@@ -13,28 +13,29 @@
 #include "hardware/sim/grbl_settings.hpp"
 #include "hardware/sim/grbl_words.hpp"
 #include "hardware/sim/motor_axis.hpp"
+#include "hardware/sim/serial_device.hpp"
 #include "hardware/sim/sim_time.hpp"
 
 namespace swivel::sim {
 
 constexpr std::int64_t kAlarmSilence_ns = 500 * kMillisecond_ns;
 
-class GrblPeer {
+class GrblPeer : public SerialDevice {
  public:
   GrblPeer(const MotorOptions& options, std::uint64_t seed, std::int64_t now_ns);
 
-  // As when its serial port is opened, which resets an Arduino.
-  void power_up(std::int64_t now_ns);
-  void receive(std::string_view bytes, std::int64_t now_ns);
-  void advance(std::int64_t now_ns);
-  std::string take_output();
+  void power_up(std::int64_t now_ns) override;
+  void receive(std::string_view bytes, std::int64_t now_ns) override;
+  void advance(std::int64_t now_ns) override;
+  std::string take_output() override;
+  std::int64_t next_event_ns(std::int64_t now_ns) const override;
 
   // Faults from now on.
   void raise_alarm(int number, std::int64_t now_ns);  // 1 and 2 keep it deaf until a reset
   void lose_steps(double angle_deg, std::int64_t now_ns) { axis_.lose_steps(angle_deg, now_ns); }
   void set_switch(HomeSwitch home_switch) { axis_.set_switch(home_switch); }
 
-  // Something may come of itself: call advance() every few milliseconds.
+  // Something may come of itself, one does not know when.
   bool busy(std::int64_t now_ns) const;
 
   double shaft_angle_deg(std::int64_t time_ns) const { return axis_.shaft_angle_deg(time_ns); }

@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -18,7 +17,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::int64_t kBusyTickNs = 2'000'000;
+constexpr std::int64_t kHeldTick_ns = 2 * kMillisecond_ns;
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), what);
@@ -35,7 +34,7 @@ void prepare(const std::string& path) {
 
 }  // namespace
 
-GrblPort::GrblPort(GrblPeer& peer, const std::string& link) : peer_(&peer), link_(link) {
+GrblPort::GrblPort(SerialDevice& peer, const std::string& link) : peer_(&peer), link_(link) {
   plug_in();
 }
 
@@ -119,9 +118,8 @@ void GrblPort::add_to(std::vector<pollfd>& waits) const {
 }
 
 std::int64_t GrblPort::next_event_ns(std::int64_t now_ns) const {
-  if (peer_->busy(now_ns) || !held_.empty()) return now_ns + kBusyTickNs;
-  if (!pty_.open()) return plugged_in_at_ns_;
-  return std::numeric_limits<std::int64_t>::max();
+  const std::int64_t by_itself_ns = pty_.open() ? peer_->next_event_ns(now_ns) : plugged_in_at_ns_;
+  return held_.empty() ? by_itself_ns : std::min(by_itself_ns, now_ns + kHeldTick_ns);
 }
 
 void GrblPort::serve(std::int64_t now_ns) {

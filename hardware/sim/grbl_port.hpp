@@ -1,4 +1,4 @@
-// The controller on a pty, which stands in for its USB serial port.
+// A controller on a pty, which stands in for its USB serial port.
 #pragma once
 
 #include <poll.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hardware/sim/file_descriptor.hpp"
-#include "hardware/sim/grbl_peer.hpp"
+#include "hardware/sim/serial_device.hpp"
 
 namespace swivel::sim {
 
@@ -17,7 +17,7 @@ class GrblPort {
  public:
   // `link` is a symbolic link to be made to the pty and removed at the end; empty for none.
   // Throws std::system_error. `peer` must outlive the port.
-  GrblPort(GrblPeer& peer, const std::string& link);
+  GrblPort(SerialDevice& peer, const std::string& link);
   ~GrblPort();
   GrblPort(const GrblPort&) = delete;
   GrblPort& operator=(const GrblPort&) = delete;
@@ -46,7 +46,7 @@ class GrblPort {
   void read_client(std::int64_t now_ns);
   void write_client();
 
-  GrblPeer* peer_;
+  SerialDevice* peer_;
   std::string link_;
   std::string path_;
   FileDescriptor pty_;

@@ -1,16 +1,13 @@
 #include "hardware/sim/scip_server.hpp"
 
-#include <arpa/inet.h>
-#include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <system_error>
+#include <utility>
 
 #include "hardware/lidar/scip.hpp"
+#include "hardware/sim/loopback_listener.hpp"
 #include "hardware/sim/sim_time.hpp"
 
 namespace swivel::sim {
@@ -20,23 +17,6 @@ constexpr std::size_t kSlowClient = 1U << 20U;  // bytes that a client may leave
 
 bool every(int count, std::uint64_t frame) {
   return count > 0 && frame % static_cast<std::uint64_t>(count) == 0;
-}
-
-[[noreturn]] void fail(const std::string& what) {
-  throw std::system_error(errno, std::generic_category(), what);
-}
-
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
-
-// The sockets API wants its addresses seen as another type.
-sockaddr* generic(sockaddr_in& address) {
-  return reinterpret_cast<sockaddr*>(&address);
 }
 
 }  // namespace
@@ -52,19 +32,9 @@ ScipServer::ScipServer(const ScipServerOptions& options, ScipSensor& sensor,
 }
 
 void ScipServer::listen() {
-  FileDescriptor listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  const int yes = 1;
-  sockaddr_in address = loopback(port_);
-  socklen_t length = sizeof address;
-  if (!listener.open() ||
-      ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
-      ::bind(listener.get(), generic(address), length) != 0 || ::listen(listener.get(), 4) != 0 ||
-      ::getsockname(listener.get(), generic(address), &length) != 0) {
-    fail("cannot listen on 127.0.0.1:" + std::to_string(port_) +
-         " for the lidar's clients; choose another --port");
-  }
-  port_ = ntohs(address.sin_port);
-  listener_ = std::move(listener);
+  LoopbackListener listener = listen_on_loopback(port_);
+  port_ = listener.port;
+  listener_ = std::move(listener.descriptor);
 }
 
 void ScipServer::add_to(std::vector<pollfd>& waits, std::int64_t now_ns) const {
@@ -99,12 +69,8 @@ void ScipServer::serve(std::int64_t now_ns) {
 
 void ScipServer::accept_client() {
   if (!listener_.open()) return;
-  client_ =
-      FileDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (!client_.open()) return;
-  const int yes = 1;
-  ::setsockopt(client_.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  sensor_->connect();
+  client_ = accept_next(listener_);
+  if (client_.open()) sensor_->connect();
 }
 
 void ScipServer::disconnect() {

@@ -45,7 +45,8 @@ Outcome GrblStepper::connect() {
 }
 
 Outcome GrblStepper::open_port() {
-  Result<ByteStream> opened = ByteStream::open(options_.address, options_.reply_timeout, stop_);
+  Result<ByteStream> opened =
+      ByteStream::open(options_.address, options_.reply_timeout, stop_, options_.tap);
   if (!opened) return Failure{opened.reason()};
   stream_ = std::move(*opened);
   if (options_.guard_program.empty()) return Done{};

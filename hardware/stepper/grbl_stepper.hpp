@@ -31,6 +31,7 @@ struct GrblStepperOptions {
   std::chrono::milliseconds status_timeout{500};
   std::chrono::milliseconds homing_timeout{60000};
   std::chrono::milliseconds halt_timeout{800};  // for the shaft to run down; then it is cut
+  WireTap tap;  // of every connection; it does not see the guard's two bytes
 };
 
 struct StepperStatus {

@@ -11,9 +11,9 @@
 
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
+#include "components/common/roll.hpp"
 #include "components/dds/participant.hpp"
 #include "components/swivel/live/child_process.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "hardware/io/clock.hpp"
 #include "tests/bench/mode_7.hpp"
 

@@ -3,32 +3,17 @@
 #include <fmt/core.h>
 
 #include "components/common/cloud_message.hpp"
+#include "components/common/phase_word.hpp"
 
 namespace swivel {
 namespace {
 
 std::string in_words(const msg::Sweep& sweep) {
-  switch (sweep.phase()) {
-    case msg::PHASE_HOMING:
-      return "homing";
-    case msg::PHASE_ACCELERATING:
-      return "accelerating";
-    case msg::PHASE_CRUISING:
-      return sweep.window_lines() == 1
-                 ? fmt::format("line {} of {}", sweep.window_first_line() + 1,
-                               sweep.lines_expected())
-                 : fmt::format(
-                       "scanning, {:.1f} s",
-                       static_cast<double>(sweep.window_end_ns() - sweep.window_start_ns()) * 1e-9);
-    case msg::PHASE_DECELERATING:
-      return "decelerating";
-    case msg::PHASE_RETURNING:
-      return "returning";
-    case msg::PHASE_ASSEMBLED:
-      return "assembled";
-    default:
-      return "";
-  }
+  if (sweep.phase() != msg::PHASE_CRUISING) return phase_word(sweep.phase());
+  if (sweep.window_lines() == 1)
+    return fmt::format("line {} of {}", sweep.window_first_line() + 1, sweep.lines_expected());
+  const auto window_ns = static_cast<double>(sweep.window_end_ns() - sweep.window_start_ns());
+  return fmt::format("scanning, {:.1f} s", window_ns * 1e-9);
 }
 
 }  // namespace
@@ -58,6 +43,11 @@ LiveSweeps::LiveSweeps(Participant& participant)
   });
 }
 
+void LiveSweeps::follow_all() {
+  const std::lock_guard lock(mutex_);
+  follows_all_ = true;
+}
+
 bool LiveSweeps::await_idle(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   return came_.wait_for(lock, timeout, [this] { return idle_; });
@@ -79,6 +69,7 @@ void LiveSweeps::take(const msg::Sweep& sweep) {
     idle_ = sweep.phase() == msg::PHASE_IDLE;
     came_.notify_all();
   }
+  if (follows_all_ && sweep.phase() == msg::PHASE_ASSEMBLED) return take_assembled(sweep);
   if (!requester_.saw(sweep)) return;
   if (sweep.phase() == msg::PHASE_REFUSED) return tell({{}, {}, sweep.reason()});
   if (sweep.phase() == msg::PHASE_FAULT) return tell({{}, {}, "motor fault: " + sweep.reason()});

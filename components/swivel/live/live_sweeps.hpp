@@ -1,4 +1,5 @@
-// The sweeps of one request as they come over DDS, each with its attitude and both clouds.
+// The sweeps of one request, or of all, as they come over DDS, each with its attitude and both
+// clouds.
 #pragma once
 
 #include <chrono>
@@ -20,6 +21,9 @@ class LiveSweeps {
  public:
   // Subscribes: before participant.start().
   explicit LiveSweeps(Participant& participant);
+
+  // From now on those of every request are told, and none is refused.
+  void follow_all();
 
   // Until the sequencer has nothing to do; false when the time is over.
   bool await_idle(std::chrono::milliseconds timeout);
@@ -57,6 +61,7 @@ class LiveSweeps {
   std::deque<News> news_;
   std::size_t next_index_ = 0;
   bool idle_ = false;
+  bool follows_all_ = false;
 };
 
 }  // namespace swivel

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "components/attitude_corrector/corrector.hpp"
+#include "components/common/roll.hpp"
 
 namespace swivel {
 namespace {
@@ -13,6 +14,9 @@ using std::chrono::steady_clock;
 
 // Of homing, or of one sweep of the slowest mode with its way there and back.
 constexpr auto kSilenceOfAScan = std::chrono::seconds(90);
+
+// Of those who start, and home.
+constexpr auto kStartAndHoming = std::chrono::seconds(30);
 
 // Of another's sweep that is just returning.
 constexpr auto kBusy = std::chrono::seconds(20);
@@ -39,12 +43,6 @@ void check_mode(const RigFile& rig, int mode) {
   for (const auto& [number, lines] : rig.modes.lines) known += " " + std::to_string(number);
   throw ExitError(kExitUsage,
                   "mode " + std::to_string(mode) + " is not one of this rig's:" + known);
-}
-
-const std::vector<std::string>& scanning_participants() {
-  static const std::vector<std::string> names{"stepper_sequencer", "hokuyo_reader",
-                                              "cloud_assembler", "attitude_corrector"};
-  return names;
 }
 
 int scan(LiveSweeps& sweeps, const ScanOptions& options, OutputFolder& output, StopSignal& stop,
@@ -76,6 +74,19 @@ int scan(LiveSweeps& sweeps, const ScanOptions& options, OutputFolder& output, S
     ++done;
   }
   return good;
+}
+
+int scan_live(const ParticipantOptions& options_of_participant, const ScanOptions& options,
+              OutputFolder& output, StopSignal& stop, const Remark& remark) {
+  Participant participant(options_of_participant);
+  const Roll roll(participant);
+  LiveSweeps sweeps(participant);
+  participant.start();
+  const std::string missing =
+      roll.await({"stepper_sequencer", "hokuyo_reader", "cloud_assembler", "attitude_corrector"},
+                 kStartAndHoming);
+  if (!missing.empty()) throw ExitError(kExitUnavailable, missing + "; start them with: swivel up");
+  return scan(sweeps, options, output, stop, remark);
 }
 
 }  // namespace swivel

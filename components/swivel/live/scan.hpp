@@ -1,7 +1,6 @@
 // A scan by a live rig: sweeps requested, awaited and written out.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "components/common/program.hpp"
@@ -20,15 +19,13 @@ struct ScanOptions {
 // Throws ExitError where the rig has no such mode.
 void check_mode(const RigFile& rig, int mode);
 
-// The participants whose work a scan is.
-const std::vector<std::string>& scanning_participants();
-
-// Numbers that only the caller knows of a sweep, for its report.
-using Remark = std::function<nlohmann::ordered_json(const ProcessedSweep&)>;
-
 // Returns how many sweeps were whole and their attitude known. Throws ExitError when the scan
 // comes to nothing; a stop signal cancels it.
 int scan(LiveSweeps& sweeps, const ScanOptions& options, OutputFolder& output, StopSignal& stop,
          const Remark& remark = {});
+
+// Likewise by a participant of its own, once those whose work a scan is are there.
+int scan_live(const ParticipantOptions& participant, const ScanOptions& options,
+              OutputFolder& output, StopSignal& stop, const Remark& remark = {});
 
 }  // namespace swivel

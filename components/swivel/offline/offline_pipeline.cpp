@@ -1,6 +1,7 @@
 #include "components/swivel/offline/offline_pipeline.hpp"
 
 #include <filesystem>
+#include <iostream>
 #include <utility>
 
 #include "components/attitude_corrector/corrector.hpp"
@@ -31,6 +32,75 @@ void check_source(const RecordingFacts& facts, const std::string& path, const Ri
                                     rig.path + " says otherwise; give the right one with --rig");
 }
 
+AssemblyOptions assembly_options(const RigFile& rig) {
+  return {rig.geometry, rig.axis_measured, rig.timing, rad_from_deg(rig.modes.sweep_angle_deg)};
+}
+
+// Assembler and corrector, one after the other.
+class Stages {
+ public:
+  Stages(const RigFile& rig, std::function<void(const ProcessedSweep&)> on_sweep)
+      : drawn_(rig.geometry),
+        on_sweep_(std::move(on_sweep)),
+        corrector_(rig),
+        assembler_(assembly_options(rig),
+                   [this](AssembledSweep&& assembled) { take(std::move(assembled)); }) {}
+
+  // From the next sweep on. Says why it is refused, or nothing.
+  std::string calibrate(const msg::Calibration& calibration) {
+    std::string wrong = corrector_.set_calibration(calibration);
+    if (wrong.empty()) assembler_.set_geometry(calibrated_geometry(drawn_, calibration));
+    return wrong;
+  }
+
+  void run(Recording& recording, const OnCalibration& on_calibration) {
+    play(recording, assembler_, on_calibration);
+    hand_out();
+  }
+
+ private:
+  // A sweep may be taken back when its motor fails after its last line: then it comes again.
+  void take(AssembledSweep&& assembled) {
+    const bool again = last_ && last_->sweep.sweep_id() == assembled.sweep.sweep_id();
+    if (!again) hand_out();
+    ProcessedSweep processed;
+    processed.index = handed_out_;
+    processed.sweep = assembled.sweep;
+    processed.raw = assembled.cloud;
+    processed.cloud = std::move(assembled.cloud);
+    processed.attitude = corrector_.correct(processed.sweep, processed.cloud);
+    last_ = std::move(processed);
+  }
+
+  void hand_out() {
+    if (!last_) return;
+    on_sweep_(*last_);
+    last_.reset();
+    ++handed_out_;
+  }
+
+  RigGeometry drawn_;
+  std::function<void(const ProcessedSweep&)> on_sweep_;
+  Corrector corrector_;
+  std::optional<ProcessedSweep> last_;
+  std::size_t handed_out_ = 0;
+  Assembler assembler_;
+};
+
+// The shipped rig file of that name of topics.
+std::string shipped_file_of(const std::string& rig, const std::string& path) {
+  for (const auto& entry : std::filesystem::directory_iterator(shared_file("rigs"))) {
+    if (load_rig_file(entry.path()).rig == rig) return entry.path();
+  }
+  throw ExitError(kExitUsage, path + ": it is of rig '" + rig + "'; give its file with --rig");
+}
+
+std::string suited_file_of(const RecordingFacts& facts, const std::string& path) {
+  if (!facts.rig.empty()) return shipped_file_of(facts.rig, path);
+  return shared_file("rigs/" + (facts.suggested_rig.empty() ? "yuan" : facts.suggested_rig) +
+                     ".yaml");
+}
+
 }  // namespace
 
 Recording open_recording(const std::string& path) {
@@ -42,45 +112,46 @@ Recording open_recording(const std::string& path) {
 }
 
 RigFile rig_of(const RecordingFacts& facts, const std::string& path, const std::string& rig_file) {
-  const std::string suggested = facts.suggested_rig.empty() ? "yuan" : facts.suggested_rig;
-  RigFile rig =
-      load_rig_file(rig_file.empty() ? shared_file("rigs/" + suggested + ".yaml") : rig_file);
+  RigFile rig = load_rig_file(rig_file.empty() ? suited_file_of(facts, path) : rig_file);
   if (rig_file.empty() && facts.plate) take_plate(*facts.plate, rig);
   check_source(facts, path, rig);
   return rig;
 }
 
-void play(Recording recording, Assembler& assembler) {
+void play(Recording& recording, Assembler& assembler, const OnCalibration& on_calibration) {
   while (true) {
-    auto event = recording.next();
+    const auto event = recording.next();
     if (!event) throw ExitError(kExitBadData, event.reason());
     if (!event->has_value()) break;
-    std::visit([&](const auto& message) { assembler.add(message); }, (*event)->message);
+    std::visit(
+        [&](const auto& message) {
+          if constexpr (std::is_same_v<decltype(message), const msg::Calibration&>)
+            on_calibration(message);
+          else
+            assembler.add(message);
+        },
+        (*event)->message);
   }
   assembler.finish();
 }
 
-void run_offline(Recording recording, const RigFile& rig,
+void run_offline(Recording& recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
-                 const std::function<void(ProcessedSweep&&)>& on_sweep) {
-  Corrector corrector(rig);
-  AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
-                          rad_from_deg(rig.modes.sweep_angle_deg)};
-  if (calibration) {
-    const std::string wrong = corrector.set_calibration(*calibration);
-    if (!wrong.empty()) throw ExitError(kExitBadData, "the calibration was refused: " + wrong);
-    options.geometry = calibrated_geometry(rig.geometry, *calibration);
-  }
-  Assembler assembler(options, [&](AssembledSweep&& assembled) {
-    ProcessedSweep processed;
-    processed.index = assembled.sweep.sweep_id() - 1;
-    processed.sweep = assembled.sweep;
-    processed.raw = assembled.cloud;
-    processed.cloud = std::move(assembled.cloud);
-    processed.attitude = corrector.correct(processed.sweep, processed.cloud);
-    on_sweep(std::move(processed));
-  });
-  play(std::move(recording), assembler);
+                 const std::function<void(const ProcessedSweep&)>& on_sweep) {
+  Stages stages(rig, on_sweep);
+  if (!calibration)
+    return stages.run(recording, [&](const msg::Calibration& recorded) {
+      const std::string wrong = stages.calibrate(recorded);
+      if (!wrong.empty()) std::cerr << "a recorded calibration is not used: " << wrong << '\n';
+    });
+  const std::string wrong = stages.calibrate(*calibration);
+  if (!wrong.empty()) throw ExitError(kExitBadData, "the calibration was refused: " + wrong);
+  stages.run(recording, pass_over);
+}
+
+void run_offline_as_drawn(Recording& recording, const RigFile& rig,
+                          const std::function<void(const ProcessedSweep&)>& on_sweep) {
+  Stages(rig, on_sweep).run(recording, pass_over);
 }
 
 }  // namespace swivel

@@ -19,12 +19,22 @@ Recording open_recording(const std::string& path);
 // recording itself says of its plate. Throws ConfigurationError or ExitError.
 RigFile rig_of(const RecordingFacts& facts, const std::string& path, const std::string& rig_file);
 
-// All of it through the assembler, to its end. Throws ExitError where the recording is damaged.
-void play(Recording recording, Assembler& assembler);
+using OnCalibration = std::function<void(const msg::Calibration&)>;
 
-// Calls on_sweep for each sweep in order. Throws ExitError where the recording is damaged.
-void run_offline(Recording recording, const RigFile& rig,
+// All of it through the assembler, to its end. Throws ExitError where the recording is damaged.
+void play(Recording& recording, Assembler& assembler, const OnCalibration& on_calibration);
+
+// For what looks for a calibration: those in the recording do not count.
+inline void pass_over(const msg::Calibration&) {}
+
+// Calls on_sweep for each sweep in order. Without a calibration those in the recording hold, each
+// from when it was told. Throws ExitError where the recording is damaged.
+void run_offline(Recording& recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
-                 const std::function<void(ProcessedSweep&&)>& on_sweep);
+                 const std::function<void(const ProcessedSweep&)>& on_sweep);
+
+// Likewise, with the rig as it is drawn.
+void run_offline_as_drawn(Recording& recording, const RigFile& rig,
+                          const std::function<void(const ProcessedSweep&)>& on_sweep);
 
 }  // namespace swivel

@@ -2,6 +2,7 @@
 // as PCD and PLY and its pictures. The last sweep's also stand under names without a number.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -14,6 +15,9 @@ struct OutputKinds {
   bool no_clouds = false;
   bool no_pictures = false;
 };
+
+// Numbers that only the caller knows of a sweep, for its report.
+using Remark = std::function<nlohmann::ordered_json(const ProcessedSweep&)>;
 
 class OutputFolder {
  public:

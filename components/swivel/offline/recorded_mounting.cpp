@@ -46,12 +46,13 @@ bool continues(const RecordedView& before, const SweepReadings& readings) {
          seen.lines.front().turning_down != readings.lines.front().turning_down;
 }
 
-std::vector<RecordedView> views_of(Recording recording, const RigFile& rig, bool per_sweep) {
+std::vector<RecordedView> views_of(Recording& recording, const RigFile& rig, bool per_sweep) {
   const AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
                                 rad_from_deg(rig.modes.sweep_angle_deg), true};
   std::vector<RecordedView> views;
+  std::size_t sweeps = 0;
   Assembler assembler(options, [&](AssembledSweep&& assembled) {
-    const std::size_t index = assembled.sweep.sweep_id() - 1;
+    const std::size_t index = sweeps++;
     if (!assembled.sweep.reason().empty())
       std::cout << "sweep " << index << ": " << assembled.sweep.reason() << std::endl;
     if (assembled.readings.lines.empty()) return;
@@ -66,7 +67,7 @@ std::vector<RecordedView> views_of(Recording recording, const RigFile& rig, bool
       views.push_back({{index}, assembled.sweep.mode(), std::move(assembled.readings)});
     }
   });
-  play(std::move(recording), assembler);
+  play(recording, assembler, pass_over);
   return views;
 }
 
@@ -239,7 +240,7 @@ void calibrate_recorded_mounting(const RecordedMountingOptions& options) {
   Recording recording = open_recording(options.recording);
   const RigFile rig = rig_of(recording.facts(), options.recording, options.rig_file);
   MountingOutput output(options, rig);
-  const auto fitted = fit_each(views_of(std::move(recording), rig, options.per_sweep), rig);
+  const auto fitted = fit_each(views_of(recording, rig, options.per_sweep), rig);
   const bool any = std::any_of(fitted.begin(), fitted.end(),
                                [](const FittedView& each) { return each.result.fit.has_value(); });
   if (!any) {

@@ -1,8 +1,8 @@
 #include "components/swivel/recorder/message_json.hpp"
 
-#include <map>
 #include <string>
-#include <vector>
+
+#include "components/common/phase_word.hpp"
 
 namespace swivel {
 namespace {
@@ -37,23 +37,12 @@ Json to_json(const msg::Axis& axis) {
 }
 
 Json to_json(const msg::Sweep& sweep) {
-  static const std::map<msg::SweepPhase, const char*> phases{
-      {msg::PHASE_IDLE, "idle"},
-      {msg::PHASE_HOMING, "homing"},
-      {msg::PHASE_ACCELERATING, "accelerating"},
-      {msg::PHASE_CRUISING, "cruising"},
-      {msg::PHASE_DECELERATING, "decelerating"},
-      {msg::PHASE_RETURNING, "returning"},
-      {msg::PHASE_FAULT, "fault"},
-      {msg::PHASE_REFUSED, "refused"},
-      {msg::PHASE_ASSEMBLED, "assembled"}};
-  const auto phase = phases.find(sweep.phase());
   return {{"rig", sweep.rig().to_string()},
           {"sequence_number", sweep.sequence_number()},
           {"time_ns", sweep.time_ns()},
           {"request_id", sweep.request_id()},
           {"sweep_id", sweep.sweep_id()},
-          {"phase", phase == phases.end() ? "unknown" : phase->second},
+          {"phase", phase_word(sweep.phase())},
           {"mode", sweep.mode()},
           {"action_sequence", static_cast<int>(sweep.action_sequence())},
           {"speed_deg_s", sweep.speed_deg_s()},
@@ -180,6 +169,34 @@ Json to_json(const PointCloud2& cloud) {
           {"data_bytes", cloud.data().size()}};
 }
 
+const char* word_for(msg::WireKind kind) {
+  switch (kind) {
+    case msg::WIRE_OPENED:
+      return "opened";
+    case msg::WIRE_TO_DEVICE:
+      return "to_device";
+    case msg::WIRE_FROM_DEVICE:
+      return "from_device";
+    case msg::WIRE_HUNG_UP:
+      return "hung_up";
+    case msg::WIRE_CLOSED:
+      return "closed";
+  }
+  return "unknown";
+}
+
+// Both languages are text, but for a few bytes.
+Json to_json(const msg::WireBytes& wire) {
+  return {{"rig", wire.rig().to_string()},
+          {"sequence_number", wire.sequence_number()},
+          {"device", wire.device() == msg::WIRE_OF_LIDAR ? "lidar" : "stepper"},
+          {"kind", word_for(wire.kind())},
+          {"time_ns", wire.time_ns()},
+          {"opened_time_ns", wire.opened_time_ns()},
+          {"offset", wire.offset()},
+          {"bytes", std::string(wire.bytes().begin(), wire.bytes().end())}};
+}
+
 template <class Message>
 bool put(const AnyTopic& topic, const Topic<Message>& wanted, std::string_view cdr,
          std::optional<Json>& json) {
@@ -200,7 +217,7 @@ std::optional<Json> first_of(const AnyTopic& topic, std::string_view cdr, const 
 std::optional<nlohmann::ordered_json> message_json(const AnyTopic& topic, std::string_view cdr) {
   return first_of(topic, cdr, kScanLineTopic, kAxisTopic, kSweepTopic, kSweepRequestTopic,
                   kRawCloudTopic, kCloudTopic, kAttitudeTopic, kCalibrationTopic,
-                  kCalibrationRequestTopic, kCalibrationProgressTopic, kHealthTopic);
+                  kCalibrationRequestTopic, kCalibrationProgressTopic, kHealthTopic, kWireTopic);
 }
 
 }  // namespace swivel

@@ -1,11 +1,11 @@
 #include "components/swivel/recorder/replay_source.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <utility>
 
 #include "components/mcap/reader.hpp"
+#include "components/recording/mcap_recording.hpp"
 #include "components/swivel/recorder/time_filter.hpp"
 
 namespace swivel {
@@ -26,14 +26,8 @@ const char* topic_of(const msg::Axis&) {
 const char* topic_of(const msg::Sweep&) {
   return kSweepTopic.name;
 }
-
-bool comes_from_the_stages(const AnyTopic& topic, std::string_view cdr) {
-  if (topic.is(kScanLineTopic) || topic.is(kAxisTopic) || topic.is(kCalibrationTopic)) {
-    return false;
-  }
-  if (!topic.is(kSweepTopic)) return true;
-  const auto sweep = decode_cdr<msg::Sweep>(cdr);
-  return !sweep || sweep->phase() == msg::PHASE_ASSEMBLED;
+const char* topic_of(const msg::Calibration&) {
+  return kCalibrationTopic.name;
 }
 
 class McapSource {
@@ -101,24 +95,6 @@ ReplaySource play_mcap(const std::string& path, const std::vector<std::string>& 
   }
   const auto source = std::make_shared<McapSource>(std::move(*reader), topics, window);
   return [source] { return source->next(); };
-}
-
-bool is_mcap(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string start(kMcapMagic.size(), '\0');
-  file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return file.good() && start == kMcapMagic;
-}
-
-Result<std::string> rig_in_mcap(const std::string& path) {
-  auto reader = McapReader::open(path);
-  if (!reader) return Failure{reader.reason()};
-  while (const auto message = reader->next()) {
-    if (const auto known = find_topic(reader->channel(message->channel_id).topic)) {
-      return known->rig;
-    }
-  }
-  return Failure{path + ": there is no topic of Swivel's in it"};
 }
 
 }  // namespace swivel

@@ -35,9 +35,4 @@ ReplaySource play_case(Recording recording);
 ReplaySource play_mcap(const std::string& path, const std::vector<std::string>& topics,
                        const TimeWindow& window);
 
-bool is_mcap(const std::string& path);
-
-// Of the first topic of ours; empty if there is none.
-Result<std::string> rig_in_mcap(const std::string& path);
-
 }  // namespace swivel

@@ -1,12 +1,19 @@
 #include "components/swivel/recorder/topics_named.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "components/common/program.hpp"
 
 namespace swivel {
 
 std::vector<AnyTopic> topics_named(const std::vector<std::string>& names, const std::string& rig) {
-  if (names.empty()) return all_topics();
   std::vector<AnyTopic> named;
+  if (names.empty()) {
+    // To listen to the wires doubles what the reader sends.
+    std::copy_if(all_topics().begin(), all_topics().end(), std::back_inserter(named),
+                 [](const AnyTopic& topic) { return !topic.is(kWireTopic); });
+  }
   for (const std::string& name : names) {
     const std::size_t before = named.size();
     std::string known;

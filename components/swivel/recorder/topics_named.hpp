@@ -8,8 +8,8 @@
 
 namespace swivel {
 
-// "cloud" and "rt/swivel/cloud" name the same; no names, all topics. Throws ExitError for one that
-// there is not.
+// "cloud" and "rt/swivel/cloud" name the same; no names, all topics but the wires. Throws ExitError
+// for one that there is not.
 std::vector<AnyTopic> topics_named(const std::vector<std::string>& names, const std::string& rig);
 
 }  // namespace swivel

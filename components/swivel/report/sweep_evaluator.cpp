@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/transform_cloud.hpp"
 #include "components/attitude_corrector/corrector.hpp"
 #include "components/common/program.hpp"
 #include "components/swivel/offline/text_file.hpp"
 #include "components/swivel/pictures/attitude_charts.hpp"
-#include "components/swivel/pictures/sweep_charts.hpp"
 #include "components/swivel/report/evaluation_json.hpp"
 
 namespace swivel {
@@ -59,61 +57,23 @@ SweepEvaluator::SweepEvaluator(std::string folder, std::string title, const RigF
     : folder_(std::move(folder)),
       title_(std::move(title)),
       rig_(rig),
+      pictures_(folder_, title_, rig_),
       room_yaw_rad_(rad_from_deg(room_yaw_deg)) {
   evaluation_.axis_measured = rig.axis_measured;
 }
 
 nlohmann::ordered_json SweepEvaluator::add(const ProcessedSweep& processed) {
-  const std::vector<Surface> surfaces = find_surfaces(
-      processed.cloud, rig_.axis_measured ? SurfaceKind::kAny : SurfaceKind::kUpright);
+  const std::vector<Surface> surfaces = pictures_.surfaces_of(processed);
   evaluation_.sweeps.push_back(facts_of(processed, surfaces));
   evaluation_.naive = evaluation_.naive || processed.sweep.action_sequence() == msg::SEQUENCE_NAIVE;
   evaluation_.alpha_calibrated = processed.attitude.calibrated();
   if (!rig_.axis_measured) evaluation_.alpha_deg = processed.attitude.alpha_deg();
   walls_.push_back(planes_of(surfaces));
   device_stamps_ms_.push_back(processed.sweep.first_device_stamp_ms());
-  if (!processed.cloud.points.empty()) draw(processed, surfaces);
+  if (!processed.cloud.points.empty()) pictures_.draw(processed, surfaces);
   nlohmann::ordered_json json;
   json["surfaces"] = surfaces_json(surfaces);
   return json;
-}
-
-std::string SweepEvaluator::picture(const std::string& kind, std::size_t sweep) const {
-  return fmt::format("{}/{}_{:02}.png", folder_, kind, sweep);
-}
-
-void SweepEvaluator::draw(const ProcessedSweep& processed, const std::vector<Surface>& surfaces) {
-  const msg::Attitude& attitude = processed.attitude;
-  const bool corrected = attitude.verdict() == msg::VERDICT_GOOD;
-  PictureCaption caption;
-  caption.title = title_;
-  caption.sweep = processed.index;
-  caption.mode = processed.sweep.mode();
-  caption.verdict = verdict_word(attitude.verdict());
-  caption.frame = rig_.axis_measured ? "base" : corrected ? "O" : "O' (not corrected)";
-  if (corrected) caption.phi_offset_rad = rad_from_deg(attitude.phi_offset_deg());
-  const auto path = [&](const std::string& kind) {
-    return *drawn_.insert(picture(kind, processed.index)).first;
-  };
-  must_be_written(write_surfaces_chart(path("surfaces"), surfaces, caption));
-  path("top_view");  // the output folder draws it
-  if (rig_.axis_measured) return;
-  must_be_written(write_seam_chart(path("seam"), processed.cloud, surfaces,
-                                   {attitude.seam_deg(), attitude.seam_sigma_deg()}, caption));
-  if (rig_.plate) draw_plate(processed, caption);
-}
-
-void SweepEvaluator::draw_plate(const ProcessedSweep& processed, const PictureCaption& caption) {
-  OrganisedCloud about_axis = processed.raw;
-  transform_cloud(rig_.geometry.T_base_axis.inverse(), about_axis);
-  std::optional<PlateBeta> beta;
-  if (caption.phi_offset_rad)
-    beta = PlateBeta{rad_from_deg(processed.attitude.beta_deg()),
-                     rad_from_deg(processed.attitude.beta_sigma_deg())};
-  const std::string path = picture("plate", processed.index);
-  must_be_written(write_plate_chart(path, beams_at_plate(about_axis, *rig_.plate, rig_.geometry),
-                                    *rig_.plate, beta, caption));
-  drawn_.insert(path);
 }
 
 void SweepEvaluator::judge_errors(const std::optional<AttitudeTruth>& truth) {
@@ -190,8 +150,8 @@ std::vector<Figure> SweepEvaluator::figures_of_sweeps() const {
   const auto pictures = [&](const char* kind) {
     std::vector<Picture> found;
     for (const SweepFacts* sweep : shown) {
-      const std::string path = picture(kind, sweep->attitude.sweep);
-      if (drawn_.count(path) > 0) found.push_back({path, label_of(*sweep)});
+      const std::string path = pictures_.path(kind, sweep->attitude.sweep);
+      if (pictures_.is_drawn(path)) found.push_back({path, label_of(*sweep)});
     }
     return found;
   };

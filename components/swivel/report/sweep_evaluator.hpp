@@ -4,18 +4,17 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "components/common/rig_file.hpp"
 #include "components/swivel/offline/output_folder.hpp"
 #include "components/swivel/offline/processed_sweep.hpp"
-#include "components/swivel/pictures/pictures.hpp"
 #include "components/swivel/report/attitude_truth.hpp"
 #include "components/swivel/report/findings.hpp"
 #include "components/swivel/report/report_page.hpp"
 #include "components/swivel/report/surfaces.hpp"
+#include "components/swivel/report/sweep_pictures.hpp"
 
 namespace swivel {
 
@@ -31,10 +30,7 @@ class SweepEvaluator {
   void finish(const std::optional<AttitudeTruth>& truth, OutputFolder& output);
 
  private:
-  void draw(const ProcessedSweep& processed, const std::vector<Surface>& surfaces);
-  void draw_plate(const ProcessedSweep& processed, const PictureCaption& caption);
   void judge_errors(const std::optional<AttitudeTruth>& truth);
-  std::string picture(const std::string& kind, std::size_t sweep) const;
   std::vector<const SweepFacts*> sweeps_to_show() const;
   std::vector<Figure> figures_of_all() const;
   std::vector<Figure> figures_of_sweeps() const;
@@ -44,11 +40,11 @@ class SweepEvaluator {
   std::string folder_;
   std::string title_;
   RigFile rig_;
+  SweepPictures pictures_;
   double room_yaw_rad_;
   Evaluation evaluation_;
   std::vector<std::vector<Plane>> walls_;        // a sweep each
   std::vector<std::uint32_t> device_stamps_ms_;  // likewise
-  std::set<std::string> drawn_;                  // paths
 };
 
 }  // namespace swivel

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "components/swivel/live/roll.hpp"
+#include "components/common/roll.hpp"
 #include "components/swivel/live/truth_file.hpp"
 #include "hardware/io/clock.hpp"
 #include "tests/components/dds/test_participant.hpp"

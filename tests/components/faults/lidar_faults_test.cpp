@@ -1,7 +1,7 @@
 // What a lidar and its network do wrong in the middle of a sweep.
 #include <gmock/gmock.h>
 
-#include "components/swivel/live/roll.hpp"
+#include "components/common/roll.hpp"
 #include "hardware/io/clock.hpp"
 #include "tests/components/faults/fault_rig.hpp"
 

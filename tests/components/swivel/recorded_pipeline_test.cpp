@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "components/common/roll.hpp"
 #include "components/mcap/reader.hpp"
 #include "components/swivel/live/child_process.hpp"
-#include "components/swivel/live/roll.hpp"
 #include "run_swivel.hpp"
 #include "scratch_folder.hpp"
 #include "tests/components/dds/test_participant.hpp"
@@ -65,6 +65,15 @@ std::vector<std::string> recorded(const std::string& path, const std::string& to
   return messages;
 }
 
+// What process makes of a recording, as text.
+std::string attitudes_of(const ScratchFolder& scratch, const std::string& recording) {
+  EXPECT_EQ(run_swivel(scratch, "process --no-clouds --no-pictures " + recording + " -o " +
+                                    scratch.file("processed")),
+            0)
+      << content_of(scratch.file("err"));
+  return content_of(scratch.file("processed/attitude.csv"));
+}
+
 TEST(RecordedPipeline, WhatWasRecordedGivesTheSameCloudsBitForBitWhenItIsReplayed) {
   const ScratchFolder scratch;
   const std::string original = std::string(SWIVEL_TEST_DATA) + "/recordings/plate_period";
@@ -76,6 +85,7 @@ TEST(RecordedPipeline, WhatWasRecordedGivesTheSameCloudsBitForBitWhenItIsReplaye
     EXPECT_GE(messages.size(), 2U) << topic;
     EXPECT_TRUE(messages == recorded(second, topic)) << topic;
   }
+  EXPECT_EQ(attitudes_of(scratch, first), attitudes_of(scratch, original));
   // Of two writers, and so in any order: the assembler's are made again, not played.
   EXPECT_EQ(recorded(first, "swivel/sweep").size(), recorded(second, "swivel/sweep").size());
   EXPECT_EQ(run_swivel(scratch, "check " + second), 0) << content_of(scratch.file("out"));

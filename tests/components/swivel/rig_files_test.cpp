@@ -68,7 +68,12 @@ OrganisedCloud pan_cloud(double bias_rad) {
   while (true) {
     auto event = recording->next();
     if (!event || !event->has_value()) break;
-    std::visit([&](const auto& message) { assembler.add(message); }, (*event)->message);
+    std::visit(
+        [&](const auto& message) {
+          if constexpr (!std::is_same_v<decltype(message), const msg::Calibration&>)
+            assembler.add(message);
+        },
+        (*event)->message);
   }
   assembler.finish();
   return cloud;

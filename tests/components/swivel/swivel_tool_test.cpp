@@ -74,6 +74,18 @@ TEST(Process, FindsTheAttitudeOfAPlateCaseWithinThePapersAccuracy) {
   }
 }
 
+TEST(Map, DrawsEverySweepFromAboveAndClose) {
+  const ScratchFolder scratch;
+  const std::string folder = scratch.file("maps");
+  const Ended ended = run(scratch, "map " + recording("plate_period") + " -o " + folder);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  for (const char* kind : {"top_view", "density", "surfaces", "seam", "plate"}) {
+    for (const char* sweep : {"_00.png", "_01.png"})
+      EXPECT_GT(std::filesystem::file_size(folder + "/" + kind + sweep), 10000U) << kind;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder + "/cloud_00.pcd"));
+}
+
 TEST(Process, WritesCloudsPicturesAndAReport) {
   const ScratchFolder scratch;
   const std::string folder = scratch.file("deep/out_dir");

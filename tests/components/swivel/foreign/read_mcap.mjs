@@ -1,16 +1,8 @@
 // What programs of others make of our MCAP files: reads FILE with npm's @mcap/core, decodes every
 // message by the definition that stands in the file, and prints counts and sums as JSON.
-import { parseIDL } from "@foxglove/omgidl-parser";
-import { MessageReader as IdlReader } from "@foxglove/omgidl-serialization";
-import { parse as parseRosMessage } from "@foxglove/rosmsg";
-import { MessageReader as RosReader } from "@foxglove/rosmsg2-serialization";
 import { McapIndexedReader } from "@mcap/core";
 import { open } from "node:fs/promises";
-
-const readers = {
-  omgidl: (schema, text) => new IdlReader(schema.name, parseIDL(text)),
-  ros2msg: (_, text) => new RosReader(parseRosMessage(text, { ros2: true })),
-};
+import { decoderOf } from "./decoders.mjs";
 
 const sum = (numbers) => numbers.reduce((total, number) => total + Number(number), 0);
 
@@ -42,7 +34,7 @@ const readable = {
 const reader = await McapIndexedReader.Initialize({ readable });
 const decoders = new Map();
 for (const [id, schema] of reader.schemasById) {
-  decoders.set(id, readers[schema.encoding](schema, new TextDecoder().decode(schema.data)));
+  decoders.set(id, decoderOf(schema.encoding, schema.name, new TextDecoder().decode(schema.data)));
 }
 
 const topics = {};

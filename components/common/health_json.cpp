@@ -1,4 +1,4 @@
-#include "components/swivel/live/health_json.hpp"
+#include "components/common/health_json.hpp"
 
 #include "hardware/io/clock.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "components/swivel/live/roll.hpp"
+#include "components/common/roll.hpp"
 
 namespace swivel {
 

@@ -1,4 +1,4 @@
-#include "components/swivel/live/roll.hpp"
+#include "components/common/roll.hpp"
 
 #include <algorithm>
 #include <thread>
