@@ -55,9 +55,10 @@ int report_recording(const ReportOptions& options) {
   output.note("calibration_file", options.calibration_file);
   SweepEvaluator evaluator(options.folder, title, rig,
                            facts.plate ? facts.plate->room_yaw_deg : 0.0);
-  run_offline(std::move(recording), rig, calibration, [&](const ProcessedSweep& processed) {
-    output.add(processed, evaluator.add(processed));
-  });
+  run_offline(
+      std::move(recording), rig, calibration,
+      [&](const ProcessedSweep& processed) { output.add(processed, evaluator.add(processed)); },
+      rig.axis_measured ? Readings::kKept : Readings::kForgotten);
   conclude(options, evaluator, output);
   return output.sweeps() == facts.modes.size() ? kExitOk : kExitInternal;
 }

@@ -62,10 +62,10 @@ void play(Recording recording, Assembler& assembler) {
 
 void run_offline(Recording recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
-                 const std::function<void(ProcessedSweep&&)>& on_sweep) {
+                 const std::function<void(ProcessedSweep&&)>& on_sweep, Readings readings) {
   Corrector corrector(rig);
   AssemblyOptions options{rig.geometry, rig.axis_measured, rig.timing,
-                          rad_from_deg(rig.modes.sweep_angle_deg)};
+                          rad_from_deg(rig.modes.sweep_angle_deg), readings == Readings::kKept};
   if (calibration) {
     const std::string wrong = corrector.set_calibration(*calibration);
     if (!wrong.empty()) throw ExitError(kExitBadData, "the calibration was refused: " + wrong);
@@ -77,6 +77,7 @@ void run_offline(Recording recording, const RigFile& rig,
     processed.sweep = assembled.sweep;
     processed.raw = assembled.cloud;
     processed.cloud = std::move(assembled.cloud);
+    processed.readings = std::move(assembled.readings);
     processed.attitude = corrector.correct(processed.sweep, processed.cloud);
     on_sweep(std::move(processed));
   });

@@ -22,9 +22,12 @@ RigFile rig_of(const RecordingFacts& facts, const std::string& path, const std::
 // All of it through the assembler, to its end. Throws ExitError where the recording is damaged.
 void play(Recording recording, Assembler& assembler);
 
+enum class Readings { kForgotten, kKept };
+
 // Calls on_sweep for each sweep in order. Throws ExitError where the recording is damaged.
 void run_offline(Recording recording, const RigFile& rig,
                  const std::optional<msg::Calibration>& calibration,
-                 const std::function<void(ProcessedSweep&&)>& on_sweep);
+                 const std::function<void(ProcessedSweep&&)>& on_sweep,
+                 Readings readings = Readings::kForgotten);
 
 }  // namespace swivel

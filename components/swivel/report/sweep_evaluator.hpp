@@ -14,6 +14,7 @@
 #include "components/swivel/pictures/pictures.hpp"
 #include "components/swivel/report/attitude_truth.hpp"
 #include "components/swivel/report/findings.hpp"
+#include "components/swivel/report/mounting_evaluator.hpp"
 #include "components/swivel/report/report_page.hpp"
 #include "components/swivel/report/surfaces.hpp"
 
@@ -46,6 +47,7 @@ class SweepEvaluator {
   RigFile rig_;
   double room_yaw_rad_;
   Evaluation evaluation_;
+  MountingEvaluator mounting_;
   std::vector<std::vector<Plane>> walls_;        // a sweep each
   std::vector<std::uint32_t> device_stamps_ms_;  // likewise
   std::set<std::string> drawn_;                  // paths
