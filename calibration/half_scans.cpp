@@ -193,6 +193,17 @@ double finest_cell_m(const SweepReadings& readings, const std::vector<View>& vie
   return kCellShares.back() * median_range_m(thinned(readings, views));
 }
 
+std::optional<ViewsApart> compare_apart(const SweepReadings& readings, const RigGeometry& nominal,
+                                        const MountingVector& mounting) {
+  const auto views = views_of_lines(readings);
+  if (!views) return std::nullopt;
+  const double cell_m = finest_cell_m(readings, *views);
+  const auto apart_m = [&](const MountingVector& under) {
+    return compare_half_scans(readings, *views, {}, {nominal, under, readings}, cell_m).residual_m;
+  };
+  return ViewsApart{apart_m(mounting_of(nominal)), apart_m(mounting)};
+}
+
 std::optional<HalfScansFit> fit_half_scans(const SweepReadings& readings,
                                            const RigGeometry& nominal, const MountingPrior& prior,
                                            const MountingVector& start) {

@@ -29,6 +29,16 @@ HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vecto
 // In which two views are compared at last: a small scene has small cells.
 double finest_cell_m(const SweepReadings& readings, const std::vector<View>& views);
 
+// How far one view lies from the other, rms over cells, under the rig file's mounting and under
+// another.
+struct ViewsApart {
+  double nominal_m = 0.0;
+  double mounted_m = 0.0;
+};
+// None where nothing is seen twice.
+std::optional<ViewsApart> compare_apart(const SweepReadings& readings, const RigGeometry& nominal,
+                                        const MountingVector& mounting);
+
 struct HalfScansFit {
   MountingSolution solution;
   std::size_t cells = 0;

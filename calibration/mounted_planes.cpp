@@ -35,6 +35,16 @@ OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& be
   return cloud;
 }
 
+std::vector<RayPlace> still_near(const std::vector<RayPlace>& rays, double reach_m,
+                                 const SweepReadings& readings, const MountedBeams& beams) {
+  const std::vector<double> off_m = off_their_plane_m(rays, readings, beams);
+  std::vector<RayPlace> near;
+  for (std::size_t ray = 0; ray < rays.size(); ++ray) {
+    if (std::abs(off_m[ray]) <= reach_m) near.push_back(rays[ray]);
+  }
+  return near;
+}
+
 double rms(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double value : values) squares += value * value;
@@ -100,7 +110,9 @@ Thickness compare_thickness(const SweepReadings& readings, const RigGeometry& no
   Thickness thickness;
   const auto planes = find_sighted_planes(readings, before, kLargestPlanes);
   for (const SightedPlane& plane : planes) {
-    const auto rays = rays_near(plane, kReachSigmas * plane.range_sigma_m, readings, before);
+    const double reach_m = kReachSigmas * plane.range_sigma_m;
+    const auto rays =
+        still_near(rays_near(plane, reach_m, readings, before), reach_m, readings, after);
     thickness.nominal_m += std::pow(rms(off_their_plane_m(rays, readings, before)), 2);
     thickness.mounted_m += std::pow(rms(off_their_plane_m(rays, readings, after)), 2);
   }

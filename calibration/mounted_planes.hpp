@@ -27,8 +27,9 @@ std::vector<RayPlace> rays_near(const SightedPlane& plane, double reach_m,
 std::vector<double> off_their_plane_m(const std::vector<RayPlace>& rays,
                                       const SweepReadings& readings, const MountedBeams& beams);
 
-// How thick the largest planes are under the rig file's mounting and under another: rms, each over
-// the same rays. Those are chosen as the rig file has it, so that what is said to be thinner is.
+// How thick the largest planes are under the rig file's mounting and under another: rms over the
+// same rays, those that are near the planes under both. A plane square to the axis tells of no turn
+// about it.
 struct Thickness {
   double nominal_m = 0.0;
   double mounted_m = 0.0;

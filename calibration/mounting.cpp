@@ -185,6 +185,7 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
     return {std::nullopt, "the fit did not come to an end; is the rig file that of this rig?"};
   fit.geometry = with_mounting(nominal, fit.solution.value);
   fit.thickness = compare_thickness(readings, nominal, fit.solution.value);
+  fit.apart = compare_apart(readings, nominal, fit.solution.value);
   return {std::move(fit), {}};
 }
 

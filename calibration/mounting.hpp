@@ -37,6 +37,7 @@ struct MountingFit {
   double residual_m = 0.0;                // rms of ranges about the planes
   std::vector<SightedPlane> planes;       // of one sweep alone
   Thickness thickness;                    // likewise
+  std::optional<ViewsApart> apart;        // likewise
   SymmetricRaysFit symmetric_rays;        // the steps of Zeng 2018, likewise
   std::optional<HalfScansFit> half_scans;
 

@@ -60,6 +60,10 @@ Json mounting_json(const std::vector<std::size_t>& sweeps, const MountingFit& fi
     json["largest_planes_nominal_mm"] = mm_from_m(fit.thickness.nominal_m);
     json["largest_planes_mm"] = mm_from_m(fit.thickness.mounted_m);
   }
+  if (fit.apart) {
+    json["views_apart_nominal_mm"] = mm_from_m(fit.apart->nominal_m);
+    json["views_apart_mm"] = mm_from_m(fit.apart->mounted_m);
+  }
   json["rays_on_planes"] = fit.rays;
   json["cells_seen_twice"] = fit.cells;
   if (fit.symmetric_rays.attempts > 0 || fit.half_scans) json["steps"] = steps_of(fit);

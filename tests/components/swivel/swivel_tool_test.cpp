@@ -313,6 +313,8 @@ TEST(CalibrateMounting, FindsThePlayOfARealAxisAndProcessTakesItOut) {
   EXPECT_GT(found["hysteresis_deg"], 0.05);
   EXPECT_LT(found["hysteresis_deg"], 0.15);
   EXPECT_LT(found["hysteresis_sigma_deg"], 0.06);
+  EXPECT_LT(found["views_apart_mm"].get<double>(),
+            0.95 * found["views_apart_nominal_mm"].get<double>());
   const auto down = [&](const std::string& options) {
     const std::string process = "process " + turning + " --no-pictures -o " + scratch.file("clouds");
     EXPECT_EQ(run(scratch, process + options).code, 0);
