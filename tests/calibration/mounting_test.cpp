@@ -91,6 +91,26 @@ TEST(MountedBeams, AreTheForwardModelAndItsDerivatives) {
   }
 }
 
+SweepReadings lines_at(const std::vector<double>& up_deg, const std::vector<double>& down_deg) {
+  SweepReadings readings;
+  for (const double angle_deg : up_deg)
+    readings.lines.push_back({angle_deg * kDeg, 0.0, false, {1.0F, 1.0F}});
+  for (const double angle_deg : down_deg)
+    readings.lines.push_back({angle_deg * kDeg, 0.0, true, {1.0F, 1.0F}});
+  return readings;
+}
+
+TEST(TwoViews, AreOfWhatBothPassed) {
+  constexpr View kFirst = View::kFirst, kSecond = View::kSecond, kOnlyOne = View::kOnlyOne;
+  EXPECT_EQ(views_of_lines(lines_at({0, 20, 40, 60}, {61, 50, 30})),
+            (std::vector{kOnlyOne, kOnlyOne, kFirst, kFirst, kOnlyOne, kSecond, kSecond}));
+  EXPECT_EQ(views_of_lines(lines_at({10, 80, 150, 220, 290}, {})),
+            (std::vector{kFirst, kFirst, kOnlyOne, kSecond, kSecond}));
+  EXPECT_FALSE(views_of_lines(lines_at({0, 90, 199}, {}))) << "19 deg more than half a turn";
+  EXPECT_FALSE(views_of_lines(lines_at({0, 20}, {60, 40})));
+  EXPECT_FALSE(views_of_lines({}));
+}
+
 TEST(SymmetricRays, FindABiasOf5DegreesUnderARoof) {
   PanScan scan;
   scan.roof_only = true;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "calibration/roof_steps.hpp"
@@ -36,8 +37,8 @@ std::optional<std::vector<double>> MountingPictures::add(std::size_t sweep,
   must_be_drawn(write_roof_chart(roof.steps_path, title, *look));
   must_be_drawn(write_deviations_chart(roof.deviations_path, title, *look));
   roofs_.push_back(std::move(roof));
-  std::vector<double> means_m;
-  for (const std::vector<double>& off_m : look->off_m) means_m.push_back(mean_deviation_m(off_m));
+  std::vector<double> means_m(kRoofSteps);
+  std::transform(look->off_m.begin(), look->off_m.end(), means_m.begin(), mean_deviation_m);
   return means_m;
 }
 
