@@ -316,7 +316,8 @@ TEST(CalibrateMounting, FindsThePlayOfARealAxisAndProcessTakesItOut) {
   EXPECT_LT(found["views_apart_mm"].get<double>(),
             0.95 * found["views_apart_nominal_mm"].get<double>());
   const auto down = [&](const std::string& options) {
-    const std::string process = "process " + turning + " --no-pictures -o " + scratch.file("clouds");
+    const std::string process =
+        "process " + turning + " --no-pictures -o " + scratch.file("clouds");
     EXPECT_EQ(run(scratch, process + options).code, 0);
     return content_of(scratch.file("clouds/cloud_01.ply"));
   };
