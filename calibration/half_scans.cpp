@@ -9,7 +9,6 @@
 namespace swivel {
 namespace {
 
-constexpr double kLeastOverlapRad = rad_from_deg(20.0);  // of a turn beyond half of one
 constexpr std::size_t kFewestRaysOfAView = 8;
 constexpr double kFurthestM = 12.0;       // beyond, rays are too far apart to fill a cell
 constexpr double kThickestOfCell = 0.15;  // rms over the cell's size
@@ -58,10 +57,11 @@ using Cells = std::unordered_map<CellKey, Cell>;
 
 // Calls visit(line, beam, shaft, point at rest) of every ray that may speak.
 template <typename Visit>
-void for_each_ray(const SweepReadings& readings, const RayMask& left_out, const MountedBeams& beams,
-                  const Visit& visit) {
+void for_each_ray(const SweepReadings& readings, const std::vector<View>& views,
+                  const RayMask& left_out, const MountedBeams& beams, const Visit& visit) {
   const std::size_t count = readings.beams();
   for (std::size_t line = 0; line < readings.lines.size(); ++line) {
+    if (views[line] == View::kOnlyOne) continue;
     const LineOfReadings& said = readings.lines[line];
     for (std::size_t beam = 0; beam < count; ++beam) {
       const auto range_m = static_cast<double>(said.ranges_m[beam]);
@@ -92,23 +92,24 @@ std::optional<Eigen::Vector3d> normal_of(const Cell& cell, double cell_m) {
   return normal;
 }
 
-Cells cells_of(const SweepReadings& readings, const std::vector<bool>& second,
+Cells cells_of(const SweepReadings& readings, const std::vector<View>& views,
                const RayMask& left_out, const MountedBeams& beams, double cell_m) {
   Cells cells;
-  for_each_ray(readings, left_out, beams,
+  const auto place = [&views](std::size_t line) { return views[line] == View::kFirst ? 0U : 1U; };
+  for_each_ray(readings, views, left_out, beams,
                [&](std::size_t line, std::size_t, const ShaftTurn&, const Eigen::Vector3d& point) {
-                 ViewOfCell& view = cells[cell_at(point, cell_m)].views[second[line] ? 1 : 0];
+                 ViewOfCell& view = cells[cell_at(point, cell_m)].views[place(line)];
                  view.count += 1.0;
                  view.sum += point;
                  view.squares += point * point.transpose();
                });
   for (auto& [key, cell] : cells) cell.normal = normal_of(cell, cell_m);
-  for_each_ray(readings, left_out, beams,
+  for_each_ray(readings, views, left_out, beams,
                [&](std::size_t line, std::size_t beam, const ShaftTurn& shaft,
                    const Eigen::Vector3d& point) {
                  Cell& cell = cells.at(cell_at(point, cell_m));
                  if (!cell.normal) return;
-                 cell.views[second[line] ? 1 : 0].moves +=
+                 cell.views[place(line)].moves +=
                      beams.moves_along(shaft.to_turning(*cell.normal), readings.lines[line], beam,
                                        static_cast<double>(readings.lines[line].ranges_m[beam]));
                });
@@ -145,10 +146,15 @@ double scatter_in_sigmas(const std::vector<CellResidual>& residuals) {
   return std::max(1.0, 1.4826 * *middle);
 }
 
-SweepReadings thinned(const SweepReadings& readings) {
-  const std::size_t rays = readings.lines.size() * readings.beams();
-  const std::size_t stride = std::max<std::size_t>(1, rays / kRaysCompared);
+// Without what is seen once, and without most rays where there are many.
+SweepReadings thinned(const SweepReadings& readings, const std::vector<View>& views) {
   SweepReadings thin = readings;
+  thin.lines.clear();
+  for (std::size_t line = 0; line < readings.lines.size(); ++line) {
+    if (views[line] != View::kOnlyOne) thin.lines.push_back(readings.lines[line]);
+  }
+  const std::size_t rays = thin.lines.size() * thin.beams();
+  const std::size_t stride = std::max<std::size_t>(1, rays / kRaysCompared);
   for (LineOfReadings& line : thin.lines) {
     for (std::size_t beam = 0; beam < line.ranges_m.size(); ++beam) {
       if (beam % stride != 0) line.ranges_m[beam] = std::nanf("");
@@ -159,27 +165,10 @@ SweepReadings thinned(const SweepReadings& readings) {
 
 }  // namespace
 
-std::optional<std::vector<bool>> second_view(const SweepReadings& readings) {
-  std::vector<bool> second;
-  const auto& lines = readings.lines;
-  if (lines.empty()) return std::nullopt;
-  const auto down = [](const LineOfReadings& line) { return line.turning_down; };
-  const bool both_ways = std::any_of(lines.begin(), lines.end(), down) &&
-                         !std::all_of(lines.begin(), lines.end(), down);
-  double most_rad = 0.0;
-  for (const LineOfReadings& line : lines) {
-    const double turned_rad = std::abs(line.axis_angle_rad - lines.front().axis_angle_rad);
-    second.push_back(both_ways ? line.turning_down : turned_rad >= kPi);
-    most_rad = std::max(most_rad, turned_rad);
-  }
-  if (!both_ways && most_rad < kPi + kLeastOverlapRad) return std::nullopt;
-  return second;
-}
-
-HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vector<bool>& second,
+HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vector<View>& views,
                                  const RayMask& left_out, const MountedBeams& beams,
                                  double cell_m) {
-  const auto residuals = residuals_of(cells_of(readings, second, left_out, beams, cell_m));
+  const auto residuals = residuals_of(cells_of(readings, views, left_out, beams, cell_m));
   HalfScanCells compared;
   if (residuals.empty()) return compared;
   const double scatter = scatter_in_sigmas(residuals);
@@ -200,22 +189,35 @@ HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vecto
   return compared;
 }
 
-double finest_cell_m(const SweepReadings& readings) {
-  return kCellShares.back() * median_range_m(readings);
+double finest_cell_m(const SweepReadings& readings, const std::vector<View>& views) {
+  return kCellShares.back() * median_range_m(thinned(readings, views));
+}
+
+std::optional<ViewsApart> compare_apart(const SweepReadings& readings, const RigGeometry& nominal,
+                                        const MountingVector& mounting) {
+  const auto views = views_of_lines(readings);
+  if (!views) return std::nullopt;
+  const double cell_m = finest_cell_m(readings, *views);
+  const auto apart_m = [&](const MountingVector& under) {
+    return compare_half_scans(readings, *views, {}, {nominal, under, readings}, cell_m).residual_m;
+  };
+  return ViewsApart{apart_m(mounting_of(nominal)), apart_m(mounting)};
 }
 
 std::optional<HalfScansFit> fit_half_scans(const SweepReadings& readings,
                                            const RigGeometry& nominal, const MountingPrior& prior,
                                            const MountingVector& start) {
-  const auto second = second_view(readings);
-  if (!second) return std::nullopt;
-  const SweepReadings thin = thinned(readings);
+  const auto all_views = views_of_lines(readings);
+  if (!all_views) return std::nullopt;
+  const SweepReadings thin = thinned(readings, *all_views);
+  const auto views = views_of_lines(thin);
+  if (!views) return std::nullopt;
   HalfScansFit fit;
   fit.solution.value = start;
   const double scale_m = median_range_m(thin);
   for (const double share : kCellShares) {
     const MountedBeams beams(nominal, fit.solution.value, thin);
-    const HalfScanCells compared = compare_half_scans(thin, *second, {}, beams, share * scale_m);
+    const HalfScanCells compared = compare_half_scans(thin, *views, {}, beams, share * scale_m);
     if (compared.cells < kFewestCells) return std::nullopt;
     fit.cells = compared.cells;
     fit.residual_m = compared.residual_m;

@@ -9,12 +9,9 @@
 #include <vector>
 
 #include "calibration/mounting_equations.hpp"
+#include "calibration/two_views.hpp"
 
 namespace swivel {
-
-// Which lines are of the first view of the surroundings, and which of the second: the halves of a
-// full turn, or the sweeps up and down. None where nothing is seen twice.
-std::optional<std::vector<bool>> second_view(const SweepReadings& readings);
 
 // Which rays may speak: lines * beams, or empty for all.
 using RayMask = std::vector<std::uint8_t>;
@@ -26,11 +23,21 @@ struct HalfScanCells {
 };
 
 // Point to plane in cells of that size, normals from the points as the mounting puts them.
-HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vector<bool>& second,
+HalfScanCells compare_half_scans(const SweepReadings& readings, const std::vector<View>& views,
                                  const RayMask& left_out, const MountedBeams& beams, double cell_m);
 
 // In which two views are compared at last: a small scene has small cells.
-double finest_cell_m(const SweepReadings& readings);
+double finest_cell_m(const SweepReadings& readings, const std::vector<View>& views);
+
+// How far one view lies from the other, rms over cells, under the rig file's mounting and under
+// another.
+struct ViewsApart {
+  double nominal_m = 0.0;
+  double mounted_m = 0.0;
+};
+// None where nothing is seen twice.
+std::optional<ViewsApart> compare_apart(const SweepReadings& readings, const RigGeometry& nominal,
+                                        const MountingVector& mounting);
 
 struct HalfScansFit {
   MountingSolution solution;

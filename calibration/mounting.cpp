@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calibration/in_words.hpp"
-#include "calibration/organised_cloud.hpp"
+#include "calibration/mounted_planes.hpp"
 
 namespace swivel {
 namespace {
@@ -12,10 +12,6 @@ namespace {
 constexpr std::size_t kFewestLines = 8;
 constexpr std::size_t kFewestRays = 500;  // on planes
 constexpr std::size_t kMostPlanes = 12;
-constexpr double kLeastShareOfPlane = 0.01;  // of the sweep's points
-constexpr double kBandOfRange = 0.03;        // a small scene has its planes near to one another
-constexpr double kThinnestBandM = 0.01;
-constexpr std::size_t kLargestPlanes = 3;
 constexpr std::size_t kPlaneSearches = 3;  // the better the mounting, the flatter the planes
 constexpr int kMostSteps = 12;             // of each search
 constexpr double kConverged = 1e-3;        // sigmas of a step
@@ -23,63 +19,23 @@ constexpr double kSteepestTilt = 0.98;     // sine: the scan plane would be squa
 constexpr double kFurthestSigmas = 4.0;    // of the prior
 constexpr double kNamedShare = 0.05;       // of a value's variance, that is the prior's
 
-// As the assembler would put it, in the frame in which the axis is at rest.
-OrganisedCloud cloud_under(const SweepReadings& readings, const MountedBeams& beams) {
-  OrganisedCloud cloud(readings.lines.size(), readings.beams());
-  for (std::size_t index = 0; index < readings.lines.size(); ++index) {
-    const LineOfReadings& line = readings.lines[index];
-    for (std::size_t beam = 0; beam < readings.beams(); ++beam) {
-      const auto range_m = static_cast<double>(line.ranges_m[beam]);
-      const Eigen::Vector3f point =
-          beams.shaft_at(line, beam).to_rest(beams.turning_point(beam, range_m)).cast<float>();
-      cloud.line(index)[beam] = {point.x(), point.y(), point.z(), 0.0F};
-    }
-  }
-  return cloud;
-}
-
-PlaneOptions plane_options(const SweepReadings& readings) {
-  PlaneOptions options;
-  options.least_share = kLeastShareOfPlane;
-  options.band_m =
-      std::clamp(kBandOfRange * median_range_m(readings), kThinnestBandM, options.band_m);
-  options.shared_strip_m = 2.0 * options.band_m;
-  return options;
-}
-
-std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
-                                              const MountedBeams& beams) {
-  const PlaneOptions options = plane_options(readings);
-  std::vector<SightedPlane> planes;
-  for (const Plane& plane : find_planes(cloud_under(readings, beams), kMostPlanes, options)) {
-    planes.push_back({plane.normal, plane.distance_m, plane.rms_m, plane.points});
-  }
-  return planes;
-}
-
-double thickness_under_m(const SweepReadings& readings, const RigGeometry& nominal,
-                         const MountingVector& mounting) {
-  const auto planes = find_planes(cloud_under(readings, {nominal, mounting, readings}),
-                                  kLargestPlanes, plane_options(readings));
-  double squares = 0.0;
-  for (const Plane& plane : planes) squares += plane.rms_m * plane.rms_m;
-  return planes.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(planes.size()));
-}
-
 // Both at once: the planes of the room, and what both views see where there is no plane.
 class JointFit {
  public:
-  JointFit(const SweepReadings& readings, const RigGeometry& nominal)
+  JointFit(const SweepReadings& readings, const RigGeometry& nominal, const Unwanted& unwanted)
       : readings_(readings),
         nominal_(nominal),
         prior_(prior_of(nominal)),
-        second_(second_view(readings)) {}
+        views_(views_of_lines(readings)),
+        cell_m_(views_ ? finest_cell_m(readings, *views_) : 0.0),
+        unwanted_(unwanted) {}
 
   void run(const MountingVector& start) {
     solution_.value = start;
     for (std::size_t search = 0; search < kPlaneSearches; ++search) {
-      planes_ = find_sighted_planes(readings_, beams());
+      planes_ = find_sighted_planes(readings_, beams(), kMostPlanes);
       for (int step = 0; step < kMostSteps; ++step) {
+        if (unwanted_()) return;
         if (take_step() < kConverged) break;
       }
     }
@@ -104,9 +60,9 @@ class JointFit {
   double take_step() {
     const PlaneSightings sightings = sight_planes(readings_, beams(), planes_);
     MountingEquations equations = without_planes(sightings);
-    if (second_) {
-      const HalfScanCells overlap = compare_half_scans(readings_, *second_, sightings.explained,
-                                                       beams(), finest_cell_m(readings_));
+    if (views_) {
+      const HalfScanCells overlap =
+          compare_half_scans(readings_, *views_, sightings.explained, beams(), cell_m_);
       equations.add(overlap.equations);
       cells_ = overlap.cells;
     }
@@ -120,7 +76,9 @@ class JointFit {
   const SweepReadings& readings_;
   const RigGeometry& nominal_;
   MountingPrior prior_;
-  std::optional<std::vector<bool>> second_;
+  std::optional<std::vector<View>> views_;
+  double cell_m_;
+  const Unwanted& unwanted_;
   MountingSolution solution_;
   std::vector<SightedPlane> planes_;
   std::size_t cells_ = 0;
@@ -193,7 +151,8 @@ bool shows_mounting(const MountingFit& fit) {
   return fit.unobservable.size() < kMountingNames.size() + 2;
 }
 
-MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& nominal) {
+MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& nominal,
+                            const Unwanted& unwanted) {
   if (std::string reason = why_unusable(readings, nominal); !reason.empty())
     return {std::nullopt, std::move(reason)};
   const MountingPrior prior = prior_of(nominal);
@@ -202,14 +161,15 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
   MountingVector start = start_of(fit, prior);
   fit.half_scans = fit_half_scans(readings, nominal, prior, start);
   if (fit.half_scans) start = fit.half_scans->solution.value;
-  JointFit joint(readings, nominal);
+  JointFit joint(readings, nominal, unwanted);
   joint.run(start);
+  if (unwanted()) return {std::nullopt, "cancelled"};
   joint.fill(fit);
   if (fit.rays < kFewestRays && fit.cells == 0) {
     return {std::nullopt,
             in_words("only ", fit.rays, " rays meet a flat surface: sweep in a room")};
   }
-  fit.advice = advice_for(fit.solution, second_view(readings).has_value());
+  fit.advice = advice_for(fit.solution, views_of_lines(readings).has_value());
   fit.unobservable = names_of_unseen(fit.solution);
   if (!shows_mounting(fit) && !take_hysteresis(readings, nominal, fit))
     return {std::nullopt, "the sweep shows nothing of the mounting: " + fit.advice};
@@ -224,8 +184,8 @@ MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& no
   if (!fit.solution.value.allFinite() || !fit.solution.covariance.allFinite())
     return {std::nullopt, "the fit did not come to an end; is the rig file that of this rig?"};
   fit.geometry = with_mounting(nominal, fit.solution.value);
-  fit.nominal_thickness_m = thickness_under_m(readings, nominal, prior.nominal);
-  fit.thickness_m = thickness_under_m(readings, nominal, fit.solution.value);
+  fit.thickness = compare_thickness(readings, nominal, fit.solution.value);
+  fit.apart = compare_apart(readings, nominal, fit.solution.value);
   return {std::move(fit), {}};
 }
 

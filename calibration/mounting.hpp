@@ -7,12 +7,14 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/chi_square.hpp"
 #include "calibration/half_scans.hpp"
+#include "calibration/mounted_planes.hpp"
 #include "calibration/mounting_equations.hpp"
 #include "calibration/plane_sightings.hpp"
 #include "calibration/symmetric_rays.hpp"
@@ -34,8 +36,8 @@ struct MountingFit {
   std::size_t cells = 0;                  // that both views see, where there is no plane
   double residual_m = 0.0;                // rms of ranges about the planes
   std::vector<SightedPlane> planes;       // of one sweep alone
-  double nominal_thickness_m = 0.0;       // of the three largest planes, likewise, rms: as the rig
-  double thickness_m = 0.0;               // file has the mounting, and as it was estimated
+  Thickness thickness;                    // likewise
+  std::optional<ViewsApart> apart;        // likewise
   SymmetricRaysFit symmetric_rays;        // the steps of Zeng 2018, likewise
   std::optional<HalfScansFit> half_scans;
 
@@ -52,8 +54,13 @@ struct MountingResult {
 // At least one of bias, ry, tx, ty is seen; else only the hysteresis of the axis.
 bool shows_mounting(const MountingFit& fit);
 
+// Asked now and then by a fit that takes seconds: whether nobody wants it any more.
+using Unwanted = std::function<bool()>;
+
 // From what was seen at one place: a sweep, or a sweep up and one down, one after the other.
-MountingResult fit_mounting(const SweepReadings& readings, const RigGeometry& nominal);
+MountingResult fit_mounting(
+    const SweepReadings& readings, const RigGeometry& nominal,
+    const Unwanted& unwanted = [] { return false; });
 
 struct JointMounting {
   MountingFit fit;

@@ -37,6 +37,7 @@ MountingVector mounting_of(const RigGeometry& rig) {
   mounting[kMountingTilt] = angles_of(rig.T_axis_lidar.linear()).pitch_rad;
   mounting[kMountingLeverX] = rig.T_axis_lidar.translation().x();
   mounting[kMountingLeverY] = rig.T_axis_lidar.translation().y();
+  mounting[kAxisHysteresis] = rig.hysteresis_rad;
   return mounting;
 }
 
@@ -45,6 +46,7 @@ RigGeometry with_mounting(const RigGeometry& rig, const MountingVector& mounting
   RollPitchYaw angles = angles_of(rig.T_axis_lidar.linear());
   angles.pitch_rad = mounting[kMountingTilt];
   mounted.bias_rad = mounting[kMountingBias];
+  mounted.hysteresis_rad = mounting[kAxisHysteresis];
   mounted.T_axis_lidar.linear() = rotation_of(angles);
   mounted.T_axis_lidar.translation().head<2>() << mounting[kMountingLeverX],
       mounting[kMountingLeverY];

@@ -23,7 +23,7 @@ inline constexpr int kMountingValues = 6;
 using MountingVector = Eigen::Matrix<double, kMountingValues, 1>;
 using MountingMatrix = Eigen::Matrix<double, kMountingValues, kMountingValues>;
 
-// As the rig file or a calibration has it; nothing of lidar and axis.
+// As the rig file or a calibration has it; no offset of ranges.
 MountingVector mounting_of(const RigGeometry& rig);
 
 // The rig with that mounting. Roll, yaw and shift along the axis, which no sweep shows (19), stay

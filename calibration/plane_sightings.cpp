@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/line_sighter.hpp"
+
 namespace swivel {
 namespace {
 
-constexpr double kGateSigmas = 3.5;       // of a range from the plane's, to be of that plane
-constexpr double kAmbiguousSigmas = 8.0;  // two planes as near to one another could both be meant
-constexpr double kLeastIncidence = 0.26;  // cosine: 75 deg; rays that graze see edges and paint
-constexpr double kGrazingTangent = 5.0;   // at which a range's variance is twice what it is
-constexpr std::size_t kRaysOfARun = 16;
-constexpr double kLeastShareOfRun = 0.7;  // fewer rays on the plane only pass through it
 constexpr std::size_t kSectors = 120;
 constexpr double kPriorTurnRad = 0.5;  // of a plane, so that no sum is singular
 constexpr double kPriorShiftM = 1.0;
@@ -31,117 +27,6 @@ PlaneAxes axes_of(const Vector3d& normal) {
   return {along, normal.cross(along)};
 }
 
-// Where a ray meets a plane.
-struct Meeting {
-  double expected_m;  // as the lidar would say it
-  double cosine;      // of normal and ray
-};
-
-constexpr int kNoPlane = -1;
-constexpr int kTwoPlanes = -2;
-
-struct RayOnPlane {
-  int plane = kNoPlane;
-  Meeting meeting{};
-  double off_m = 0.0;  // the range said, less that expected
-};
-
-double sigma_m(const SightedPlane& plane, double cosine) {
-  const double tangent_squared = 1.0 / (cosine * cosine) - 1.0;
-  return plane.range_sigma_m *
-         std::sqrt(1.0 + tangent_squared / (kGrazingTangent * kGrazingTangent));
-}
-
-class LineSighter {
- public:
-  LineSighter(const MountedBeams& beams, const std::vector<SightedPlane>& planes)
-      : beams_(beams),
-        planes_(planes),
-        normals_(planes.size()),
-        heights_m_(planes.size()),
-        meetings_(planes.size()) {}
-
-  std::vector<RayOnPlane> sight(const LineOfReadings& line) {
-    std::vector<RayOnPlane> rays(line.ranges_m.size());
-    turn(beams_.shaft_at(line, 0));
-    for (std::size_t beam = 0; beam < rays.size(); ++beam) {
-      if (std::isnan(line.ranges_m[beam])) continue;
-      if (line.angle_per_beam_rad != 0.0) turn(beams_.shaft_at(line, beam));
-      rays[beam] = sight(beam, static_cast<double>(line.ranges_m[beam]));
-    }
-    return rays;
-  }
-
- private:
-  void turn(const ShaftTurn& shaft) {
-    for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
-      normals_[plane] = shaft.to_turning(planes_[plane].normal);
-      heights_m_[plane] = planes_[plane].distance_m + normals_[plane].dot(beams_.lever_arm_m());
-    }
-  }
-
-  RayOnPlane sight(std::size_t beam, double range_m) {
-    meet_all(beam);
-    RayOnPlane ray;
-    for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
-      const Meeting& meeting = meetings_[plane];
-      const double off_m = range_m - meeting.expected_m;
-      if (!(std::abs(meeting.cosine) > kLeastIncidence) || meeting.expected_m < 0.0) continue;
-      if (std::abs(off_m) > kGateSigmas * sigma_m(planes_[plane], meeting.cosine)) continue;
-      if (ray.plane != kNoPlane && std::abs(off_m) > std::abs(ray.off_m)) continue;
-      ray = {static_cast<int>(plane), meeting, off_m};
-    }
-    if (ray.plane != kNoPlane && near_another(ray)) ray.plane = kTwoPlanes;
-    return ray;
-  }
-
-  void meet_all(std::size_t beam) {
-    for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
-      const double cosine = normals_[plane].dot(beams_.direction(beam));
-      meetings_[plane] = {beams_.range_offset_m() - heights_m_[plane] / cosine, cosine};
-    }
-  }
-
-  // Told by where the planes are, not by the range: a noisy one would favour one side.
-  bool near_another(const RayOnPlane& ray) const {
-    for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
-      if (static_cast<int>(plane) == ray.plane) continue;
-      const double apart_m = std::abs(meetings_[plane].expected_m - ray.meeting.expected_m);
-      const double sum_m =
-          planes_[plane].range_sigma_m + planes_[static_cast<std::size_t>(ray.plane)].range_sigma_m;
-      if (apart_m < 0.5 * kAmbiguousSigmas * sum_m) return true;
-    }
-    return false;
-  }
-
-  const MountedBeams& beams_;
-  const std::vector<SightedPlane>& planes_;
-  std::vector<Vector3d> normals_;  // as the shaft stands, in the turning frame,
-  std::vector<double> heights_m_;  // and the lidar's centre over the planes
-  std::vector<Meeting> meetings_;  // of the ray in work
-};
-
-// A plane goes on behind edges, through whatever stands there: there only single rays meet it.
-void leave_out_passing(const LineOfReadings& line, std::vector<RayOnPlane>& rays) {
-  for (std::size_t first = 0; first < rays.size(); first += kRaysOfARun) {
-    const std::size_t end = std::min(first + kRaysOfARun, rays.size());
-    for (std::size_t beam = first; beam < end; ++beam) {
-      const int plane = rays[beam].plane;
-      if (plane < 0) continue;
-      std::size_t said = 0;
-      std::size_t same = 0;
-      for (std::size_t other = first; other < end; ++other) {
-        if (!std::isnan(line.ranges_m[other])) ++said;
-        if (rays[other].plane == plane) ++same;
-      }
-      if (static_cast<double>(same) >= kLeastShareOfRun * static_cast<double>(said)) continue;
-      for (std::size_t other = first; other < end; ++other) {
-        if (rays[other].plane == plane) rays[other].plane = kNoPlane;
-      }
-    }
-  }
-}
-
 // Eq. (23): how far the expected range moves, over its sigma, taken where the plane is met.
 PlaneVector derivative_of(const RayOnPlane& ray, const SightedPlane& plane, const PlaneAxes& axes,
                           const MountedBeams& beams, const LineOfReadings& line, std::size_t beam) {
@@ -151,7 +36,7 @@ PlaneVector derivative_of(const RayOnPlane& ray, const SightedPlane& plane, cons
   PlaneVector derivative;
   derivative << beams.moves_along(normal, line, beam, ray.meeting.expected_m), axes.along.dot(met),
       axes.across.dot(met), 1.0;
-  return derivative / (ray.meeting.cosine * sigma_m(plane, ray.meeting.cosine));
+  return derivative / (ray.meeting.cosine * range_sigma_m(plane, ray.meeting.cosine));
 }
 
 void add_ray(const PlaneVector& derivative, double off, PlaneVector& sector, PlaneSums& sums) {
@@ -189,16 +74,15 @@ PlaneSightings sight_planes(const SweepReadings& readings, const MountedBeams& b
   LineSighter sighter(beams, planes);
   for (std::size_t index = 0; index < readings.lines.size(); ++index) {
     const LineOfReadings& line = readings.lines[index];
-    std::vector<RayOnPlane> rays = sighter.sight(line);
-    leave_out_passing(line, rays);
+    const std::vector<RayOnPlane> rays = sighter.sight(line);
     for (std::size_t beam = 0; beam < rays.size(); ++beam) {
       const RayOnPlane& ray = rays[beam];
-      sightings.explained[index * rays.size() + beam] = ray.plane != kNoPlane ? 1 : 0;
+      sightings.explained[index * rays.size() + beam] = ray.plane != RayOnPlane::kNoPlane ? 1 : 0;
       if (ray.plane < 0) continue;
       const auto own = static_cast<std::size_t>(ray.plane);
       PlaneSums& sums = sightings.planes[own];
       add_ray(derivative_of(ray, planes[own], axes[own], beams, line, beam),
-              ray.off_m / sigma_m(planes[own], ray.meeting.cosine),
+              ray.off_m / range_sigma_m(planes[own], ray.meeting.cosine),
               sums.by_sector[index / lines_of_sector], sums);
     }
   }

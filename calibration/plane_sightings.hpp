@@ -6,18 +6,10 @@
 #include <vector>
 
 #include "calibration/half_scans.hpp"
+#include "calibration/line_sighter.hpp"
 #include "calibration/mounting_equations.hpp"
-#include "calibration/planes.hpp"
 
 namespace swivel {
-
-// A plane in the frame in which the axis is at rest, and how far ranges to it scatter.
-struct SightedPlane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // n . p = -distance
-  double distance_m = 0.0;
-  double range_sigma_m = 0.0;
-  std::size_t rays = 0;
-};
 
 // One plane's part of the normal equations: mounting first, then two turns of the normal and the
 // distance.

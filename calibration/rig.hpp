@@ -20,6 +20,8 @@ struct RigGeometry {
   Eigen::Isometry3d T_base_axis = Eigen::Isometry3d::Identity();
   // Added to every beam's angle: the bias of the lidar's centreline (Zeng 2018).
   double bias_rad = 0.0;
+  // Added to the axis angle in sweeps in which it falls: the play of the gear.
+  double hysteresis_rad = 0.0;
 };
 
 // A value that is known this well: one standard deviation.

@@ -55,8 +55,7 @@ std::variant<Calibrator::AlphaRun, Calibrator::MountingRun> Calibrator::begin(
                           rad_from_deg(rig_.modes.sweep_angle_deg), true};
   return MountingRun{MountingCalibration(rig_),
                      std::make_unique<Assembler>(
-                         options, [this](AssembledSweep&& sweep) { take(std::move(sweep)); }),
-                     {}};
+                         options, [this](AssembledSweep&& sweep) { take(std::move(sweep)); })};
 }
 
 std::string Calibrator::why_not_taken(const msg::CalibrationRequest& request) const {
@@ -103,18 +102,20 @@ void Calibrator::take(const msg::Axis& axis) {
 void Calibrator::take(AssembledSweep&& assembled) {
   const msg::Sweep& sweep = assembled.sweep;
   if (run_->sweeps.count(sweep.sweep_id()) == 0) return;
+  auto& mounting = std::get<MountingRun>(run_->kind);
   std::future<MountingResult> result;
   if (sweep.complete()) {
     result = std::async(std::launch::async,
-                        [readings = std::move(assembled.readings), geometry = rig_.geometry] {
-                          return fit_mounting(readings, geometry);
+                        [readings = std::move(assembled.readings), geometry = rig_.geometry,
+                         stop = mounting.stop_fits.watch()] {
+                          return fit_mounting(readings, geometry, [&stop] { return stop->load(); });
                         });
   } else {
     std::promise<MountingResult> refusal;
     refusal.set_value({std::nullopt, sweep.reason()});
     result = refusal.get_future();
   }
-  std::get<MountingRun>(run_->kind).fits.push_back({sweep, std::move(result)});
+  mounting.fits.push_back({sweep, std::move(result)});
 }
 
 void Calibrator::collect_fits(MountingRun& mounting) {

@@ -3,6 +3,7 @@
 // is made with a mounting already.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -61,10 +62,25 @@ class Calibrator {
     msg::Sweep sweep;
     std::future<MountingResult> result;
   };
+  // Raised when it goes, with the run that holds it.
+  class StopFlag {
+   public:
+    StopFlag() = default;
+    StopFlag(StopFlag&&) = default;
+    StopFlag& operator=(StopFlag&&) = delete;
+    ~StopFlag() {
+      if (raised_) *raised_ = true;
+    }
+    std::shared_ptr<const std::atomic<bool>> watch() const { return raised_; }
+
+   private:
+    std::shared_ptr<std::atomic<bool>> raised_ = std::make_shared<std::atomic<bool>>(false);
+  };
   struct MountingRun {
     MountingCalibration calibration;
     std::unique_ptr<Assembler> assembler;
-    std::deque<SweepFit> fits;  // under way, beside what comes in
+    std::deque<SweepFit> fits = {};  // under way, beside what comes in: their end is waited for,
+    StopFlag stop_fits = {};         // and comes soon, since this goes first
   };
   struct Run {
     std::variant<AlphaRun, MountingRun> kind;

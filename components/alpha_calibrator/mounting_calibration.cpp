@@ -61,7 +61,7 @@ CalibrationOutcome MountingCalibration::fit(const LidarName& lidar, std::int64_t
   if (fits_.empty()) return {std::nullopt, "no sweep shows the mounting"};
   const JointMounting joint = join_mountings(fits_, rig_.geometry);
   std::string words = joint_in_words(joint, fits_.size());
-  if (!shows_mounting(joint.fit)) {
+  if (!shows_mounting(joint.fit) && !is_seen(joint.fit.solution, kAxisHysteresis)) {
     return {std::nullopt, "the sweeps show nothing of the mounting: " + joint.fit.advice};
   }
   if (!joint.scatter.by_chance()) {
@@ -81,6 +81,8 @@ msg::Calibration MountingCalibration::to_message(const JointMounting& joint, con
   calibration.time_ns(time_ns);
   if (rig_.plate) calibration.alpha_deg(deg_from_rad(rig_.plate->alpha_rad));  // as drawn
   set_mounting(joint.fit.geometry, calibration);
+  if (is_seen(joint.fit.solution, kAxisHysteresis))
+    calibration.hysteresis_sigma_deg(deg_from_rad(joint.fit.sigma_of(kAxisHysteresis)));
   for (const MessagePlace& row : kMessagePlaces) {
     for (const MessagePlace& column : kMessagePlaces) {
       calibration.covariance()[row.index * kCalibrationSize + column.index] =

@@ -28,7 +28,8 @@ struct AssembledSweep {
   msg::Sweep sweep;        // PHASE_ASSEMBLED; tells whether the sweep is complete
   OrganisedCloud cloud;    // frame O' if the axis is commanded, base if it is measured;
                            // empty if there is nothing to be trusted
-  SweepReadings readings;  // of the lines used, where they are kept; angles as those of the cloud
+  SweepReadings readings;  // of the lines used, where they are kept; angles from where the cloud's
+                           // are, without hysteresis
 };
 
 // lines_received = used + outside + rejected + late + Assembler::lines_waiting().

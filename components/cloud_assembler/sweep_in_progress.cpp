@@ -100,7 +100,14 @@ bool SweepInProgress::begin(const msg::ScanLine& line, const AxisTrack& axis) {
   return true;
 }
 
+// The direction is the sweep's: a line of a stop-and-go sweep stands still.
+bool SweepInProgress::turns_down() const {
+  return announced_.speed_deg_s() < 0.0;
+}
+
 void SweepInProgress::write_row(std::size_t row, const msg::ScanLine& line, const AxisTrack& axis) {
+  const double behind_rad = turns_down() ? options_.geometry.hysteresis_rad : 0.0;
+  const double zero_rad = first_angle_rad_ - behind_rad;
   const LineReadings readings{line.ranges_mm(), line.intensities(), line.range_min_mm(),
                               line.range_max_mm()};
   if (options_.timing == Timing::kEq7) {
@@ -109,14 +116,14 @@ void SweepInProgress::write_row(std::size_t row, const msg::ScanLine& line, cons
                          per_line_rad / static_cast<double>(cloud_.beams), cloud_.line(row));
   } else if (const auto segment =
                  axis.segment_over(line.beam0_time_ns(), last_beam_time_ns(line))) {
-    assembler_->assemble(readings, segment->start_angle_rad - first_angle_rad_,
+    assembler_->assemble(readings, segment->start_angle_rad - zero_rad,
                          segment->rate_rad_s * s_from_ns(line.beam_period_ns()), cloud_.line(row));
   } else {
     std::vector<double> angles_rad(cloud_.beams);
     for (std::size_t beam = 0; beam < cloud_.beams; ++beam) {
       const double delay_ns = static_cast<double>(beam) * line.beam_period_ns();
       angles_rad[beam] =
-          axis.angle_at(line.beam0_time_ns() + std::llround(delay_ns)).value() - first_angle_rad_;
+          axis.angle_at(line.beam0_time_ns() + std::llround(delay_ns)).value() - zero_rad;
     }
     assembler_->assemble(readings, angles_rad, cloud_.line(row));
   }
@@ -132,7 +139,7 @@ void SweepInProgress::keep_line(const msg::ScanLine& line, const AxisTrack& axis
   kept.axis_angle_rad = *first_rad - first_angle_rad_;
   kept.angle_per_beam_rad =
       (*last_rad - *first_rad) / static_cast<double>(std::max<std::size_t>(1, beams - 1));
-  kept.turning_down = *last_rad < *first_rad;
+  kept.turning_down = turns_down();
   kept.ranges_m.reserve(beams);
   for (const std::uint16_t range_mm : line.ranges_mm()) {
     const bool valid = range_mm >= line.range_min_mm() && range_mm <= line.range_max_mm();

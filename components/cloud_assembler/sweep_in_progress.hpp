@@ -69,6 +69,7 @@ class SweepInProgress {
   bool begin(const msg::ScanLine& line, const AxisTrack& axis);
   void write_row(std::size_t row, const msg::ScanLine& line, const AxisTrack& axis);
   void keep_line(const msg::ScanLine& line, const AxisTrack& axis);
+  bool turns_down() const;
 
   AssemblyOptions options_;
   msg::Sweep announced_;

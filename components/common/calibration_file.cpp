@@ -63,6 +63,8 @@ std::string to_yaml(const msg::Calibration& calibration) {
        << "bias_deg: " << calibration.bias_deg() << "\n"
        << "mounting_xyz_mm: " << list_of(calibration.mounting_xyz_mm()) << "\n"
        << "mounting_rpy_deg: " << list_of(calibration.mounting_rpy_deg()) << "\n"
+       << "hysteresis_deg: " << calibration.hysteresis_deg() << "\n"
+       << "hysteresis_sigma_deg: " << calibration.hysteresis_sigma_deg() << "\n"
        << "residual_deg: " << calibration.residual_deg() << "\n"
        << "chi_square: " << calibration.chi_square() << "\n"
        << "degrees_of_freedom: " << calibration.degrees_of_freedom() << "\n"
@@ -120,7 +122,9 @@ msg::Calibration load_calibration(const std::string& path) {
   std::copy(xyz_mm.begin(), xyz_mm.end(), calibration.mounting_xyz_mm().begin());
   std::copy(rpy_deg.begin(), rpy_deg.end(), calibration.mounting_rpy_deg().begin());
   calibration.residual_deg(file.number("residual_deg", {0.0, 360.0}));
-  // Files from before there was a test have neither.
+  // Files from before there was a test, or a hysteresis, have none.
+  calibration.hysteresis_deg(file.number("hysteresis_deg", kAnyAngle, 0.0));
+  calibration.hysteresis_sigma_deg(file.number("hysteresis_sigma_deg", {0.0, 360.0}, 0.0));
   calibration.chi_square(file.number("chi_square", {0.0, 1e12}, 0.0));
   calibration.degrees_of_freedom(
       static_cast<std::uint32_t>(file.integer("degrees_of_freedom", {0.0, 1e9}, 0)));

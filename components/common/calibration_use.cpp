@@ -18,6 +18,7 @@ bool all_finite(const msg::Calibration& calibration) {
   const auto& rpy_deg = calibration.mounting_rpy_deg();
   const auto& covariance = calibration.covariance();
   return finite(calibration.alpha_deg()) && finite(calibration.bias_deg()) &&
+         finite(calibration.hysteresis_deg()) && finite(calibration.hysteresis_sigma_deg()) &&
          std::all_of(xyz_mm.begin(), xyz_mm.end(), finite) &&
          std::all_of(rpy_deg.begin(), rpy_deg.end(), finite) &&
          std::all_of(covariance.begin(), covariance.end(), finite);
@@ -34,6 +35,8 @@ void copy_mounting(const msg::Calibration& from, msg::Calibration& to) {
   to.bias_deg(from.bias_deg());
   to.mounting_xyz_mm(from.mounting_xyz_mm());
   to.mounting_rpy_deg(from.mounting_rpy_deg());
+  to.hysteresis_deg(from.hysteresis_deg());
+  to.hysteresis_sigma_deg(from.hysteresis_sigma_deg());
   for (std::size_t row = kBias; row < kCalibrationSize; ++row) {
     for (std::size_t column = kBias; column < kCalibrationSize; ++column) {
       const std::size_t at = row * kCalibrationSize + column;
@@ -61,6 +64,7 @@ RigGeometry calibrated_geometry(const RigGeometry& drawn, const msg::Calibration
   geometry.T_axis_lidar =
       transform_of(calibration.mounting_xyz_mm(), calibration.mounting_rpy_deg());
   geometry.bias_rad = rad_from_deg(calibration.bias_deg());
+  geometry.hysteresis_rad = rad_from_deg(calibration.hysteresis_deg());
   return geometry;
 }
 
@@ -72,6 +76,7 @@ void set_mounting(const RigGeometry& geometry, msg::Calibration& calibration) {
     calibration.mounting_rpy_deg()[static_cast<std::size_t>(i)] = rpy_deg[i];
   }
   calibration.bias_deg(deg_from_rad(geometry.bias_rad));
+  calibration.hysteresis_deg(deg_from_rad(geometry.hysteresis_rad));
 }
 
 msg::Calibration completed(const msg::Calibration& found,

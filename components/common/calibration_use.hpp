@@ -14,10 +14,10 @@ namespace swivel {
 bool tells_alpha(const msg::Calibration& calibration);
 bool tells_mounting(const msg::Calibration& calibration);
 
-// The drawn geometry, with the bias and the mounting that the calibration tells.
+// The drawn geometry, with the bias, the mounting and the hysteresis that the calibration tells.
 RigGeometry calibrated_geometry(const RigGeometry& drawn, const msg::Calibration& calibration);
 
-// The geometry's bias and mounting, into the calibration.
+// The geometry's bias, mounting and hysteresis, into the calibration.
 void set_mounting(const RigGeometry& geometry, msg::Calibration& calibration);
 
 // What the calibration found, with what the one before it knew and it did not look for. A mounting

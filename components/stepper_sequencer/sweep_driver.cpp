@@ -58,8 +58,8 @@ LineWindow window_from(const SweepPlan& plan, std::int64_t start_ns) {
   return window;
 }
 
-// When the shaft is where the window opens, by one measured angle at full speed: however late the
-// motor started.
+// When the shaft is where the window opens, by one reported angle at full speed: however late the
+// motor started, or its ok was read.
 std::int64_t opens_ns(const SweepPlan& plan, const StepperStatus& status) {
   const std::int64_t middle_ns = status.asked_ns + (status.answered_ns - status.asked_ns) / 2;
   return after(middle_ns, (plan.window_angle_deg - status.angle_deg) / plan.speed_deg_s);
@@ -117,9 +117,9 @@ Outcome SweepDriver::confirm_window(const SweepPlan& plan, const Turn& turn, Lin
   for (;;) {
     const Result<StepperStatus> status = look();
     if (!status) return Failure{status.reason()};
-    if (options_.axis_measured && is_steady(plan, *status)) {
-      window = window_from(plan, opens_ns(plan, *status));
-    }
+    // A commanded turn is counted from its ok, unless that was read too late, or too early.
+    const bool by_report = options_.axis_measured || !proves(plan, *status, window);
+    if (by_report && is_steady(plan, *status)) window = window_from(plan, opens_ns(plan, *status));
     if (proves(plan, *status, window)) return Done{};
     const bool should_turn = status->asked_ns > turn.accepted_ns + kStartGraceNs;
     if (should_turn && status->state != GrblState::kJog)

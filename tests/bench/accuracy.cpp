@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <ctime>
-#include <functional>
-#include <thread>
 
 #include "calibration/planes.hpp"
 #include "calibration/plate_learning.hpp"
+#include "tests/bench/on_all_cores.hpp"
 #include "tests/calibration/yuans_rig.hpp"
 
 namespace swivel {
@@ -44,18 +42,6 @@ AttitudeTrial tried(const NamedEstimator& estimator, const BenchSweep& sweep) {
   const double phi_rad = phi_offset_rad(estimator.plate.alpha_rad, estimate.beta_rad);
   return {true, std::remainder(phi_rad - sweep.phi_start_rad, 2 * kPi),
           std::hypot(estimate.beta_sigma_rad, estimator.alpha_sigma_rad)};
-}
-
-void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  const auto worker = [&] {
-    for (std::size_t index = next++; index < count; index = next++) work(index);
-  };
-  std::vector<std::thread> workers;
-  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
-    workers.emplace_back(worker);
-  }
-  for (std::thread& each : workers) each.join();
 }
 
 // What a sweep brings to a calibration: its walls once, its plate by each estimator.

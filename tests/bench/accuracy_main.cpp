@@ -1,4 +1,5 @@
-// ./run bench accuracy: the attitude's error in each mode and tier, beside what is to be reached.
+// ./run bench accuracy: the attitude's error in each mode and tier, beside what is to be reached;
+// with --alpha or --mounting that of a calibration.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "calibration/units.hpp"
 #include "tests/bench/accuracy.hpp"
+#include "tests/bench/mounting_tables.hpp"
 
 namespace swivel {
 namespace {
@@ -181,8 +183,13 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "Of all random numbers")->capture_default_str();
   bool alpha = false;
   app.add_flag("--alpha", alpha, "Of alpha instead, in three rooms, from few sweeps");
+  bool mounting = false;
+  app.add_flag("--mounting", mounting,
+               "Of bias and mounting instead, on Zeng's rig; --sweeps is the number of rigs [20]");
   CLI11_PARSE(app, argc, argv);
-  if (alpha) {
+  if (mounting) {
+    swivel::print_mounting_accuracy(app.count("--sweeps") > 0 ? options.sweeps : 20, options.seed);
+  } else if (alpha) {
     swivel::measure_alpha(options.seed);
   } else {
     swivel::measure(options);

@@ -18,19 +18,8 @@ using testing::Not;
 
 constexpr double kDeg = rad_from_deg(1.0);
 
-// As the estimators should find it: roll is in the bias, yaw in the lever arm's direction.
-MountingVector truth_of(const PanScan& scan) {
-  const double yaw_rad = scan.rz_deg * kDeg;
-  MountingVector truth = MountingVector::Zero();
-  truth[kMountingBias] = (scan.bias_deg - scan.rx_deg) * kDeg;
-  truth[kMountingTilt] = scan.ry_deg * kDeg;
-  truth[kMountingLeverX] = 1e-3 * (std::cos(yaw_rad) * scan.tx_mm + std::sin(yaw_rad) * scan.ty_mm);
-  truth[kMountingLeverY] = 1e-3 * (std::cos(yaw_rad) * scan.ty_mm - std::sin(yaw_rad) * scan.tx_mm);
-  return truth;
-}
-
 void expect_within_sigmas(const MountingFit& fit, const PanScan& scan, double sigmas) {
-  const MountingVector truth = truth_of(scan);
+  const MountingVector truth = true_mounting(scan);
   for (const MountingValue value :
        {kMountingBias, kMountingTilt, kMountingLeverX, kMountingLeverY}) {
     EXPECT_NEAR(fit.solution.value[value], truth[value], sigmas * fit.sigma_of(value)) << value;
@@ -102,6 +91,26 @@ TEST(MountedBeams, AreTheForwardModelAndItsDerivatives) {
   }
 }
 
+SweepReadings lines_at(const std::vector<double>& up_deg, const std::vector<double>& down_deg) {
+  SweepReadings readings;
+  for (const double angle_deg : up_deg)
+    readings.lines.push_back({angle_deg * kDeg, 0.0, false, {1.0F, 1.0F}});
+  for (const double angle_deg : down_deg)
+    readings.lines.push_back({angle_deg * kDeg, 0.0, true, {1.0F, 1.0F}});
+  return readings;
+}
+
+TEST(TwoViews, AreOfWhatBothPassed) {
+  constexpr View kFirst = View::kFirst, kSecond = View::kSecond, kOnlyOne = View::kOnlyOne;
+  EXPECT_EQ(views_of_lines(lines_at({0, 20, 40, 60}, {61, 50, 30})),
+            (std::vector{kOnlyOne, kOnlyOne, kFirst, kFirst, kOnlyOne, kSecond, kSecond}));
+  EXPECT_EQ(views_of_lines(lines_at({10, 80, 150, 220, 290}, {})),
+            (std::vector{kFirst, kFirst, kOnlyOne, kSecond, kSecond}));
+  EXPECT_FALSE(views_of_lines(lines_at({0, 90, 199}, {}))) << "19 deg more than half a turn";
+  EXPECT_FALSE(views_of_lines(lines_at({0, 20}, {60, 40})));
+  EXPECT_FALSE(views_of_lines({}));
+}
+
 TEST(SymmetricRays, FindABiasOf5DegreesUnderARoof) {
   PanScan scan;
   scan.roof_only = true;
@@ -135,7 +144,7 @@ TEST(Mounting, UnderARoofAloneTheFiveOthersAreNamedAndStay) {
   const MountingResult result = fit_mounting(scan_of(scan), nominal);
   ASSERT_TRUE(result.fit) << result.reason;
   EXPECT_THAT(result.fit->unobservable, ElementsAre("ry", "tx", "ty", "rz", "tz"));
-  EXPECT_NEAR(result.fit->solution.value[kMountingBias], truth_of(scan)[kMountingBias],
+  EXPECT_NEAR(result.fit->solution.value[kMountingBias], true_mounting(scan)[kMountingBias],
               0.005 * kDeg);
   EXPECT_LT((result.fit->geometry.T_axis_lidar.matrix() - nominal.T_axis_lidar.matrix()).norm(),
             1e-4);

@@ -67,4 +67,16 @@ SweepReadings scan_of(const PanScan& scan) {
   return readings;
 }
 
+MountingVector true_mounting(const PanScan& scan) {
+  const double yaw_rad = rad_from_deg(scan.rz_deg);
+  MountingVector truth = MountingVector::Zero();
+  truth[kMountingBias] = rad_from_deg(scan.bias_deg - scan.rx_deg);
+  truth[kMountingTilt] = rad_from_deg(scan.ry_deg);
+  truth[kMountingLeverX] =
+      m_from_mm(std::cos(yaw_rad) * scan.tx_mm + std::sin(yaw_rad) * scan.ty_mm);
+  truth[kMountingLeverY] =
+      m_from_mm(std::cos(yaw_rad) * scan.ty_mm - std::sin(yaw_rad) * scan.tx_mm);
+  return truth;
+}
+
 }  // namespace swivel

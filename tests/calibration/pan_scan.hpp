@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "calibration/mounting_model.hpp"
 #include "calibration/sweep_readings.hpp"
 #include "hardware/sim/world.hpp"
 
@@ -35,5 +36,8 @@ struct PanScan {
 
 // 1081 beams from -135 deg, 0.25 deg apart, in whole millimetres from 0.1 to 30 m.
 SweepReadings scan_of(const PanScan& scan);
+
+// As the estimators should find it: roll is in the bias, yaw in the lever arm's direction.
+MountingVector true_mounting(const PanScan& scan);
 
 }  // namespace swivel

@@ -19,6 +19,7 @@ inline RigGeometry unlike_rig() {
   rig.T_axis_lidar = unlike_transform(0.0139, -0.021, 0.034, 2.0, -5.0, 11.0);
   rig.T_base_axis = unlike_transform(0.31, 0.17, -0.23, 37.0, -90.0, 61.0);
   rig.bias_rad = rad_from_deg(1.7);
+  rig.hysteresis_rad = rad_from_deg(0.23);
   return rig;
 }
 

@@ -33,7 +33,9 @@ void check_source(const RecordingFacts& facts, const std::string& path, const Ri
 }
 
 AssemblyOptions assembly_options(const RigFile& rig) {
-  return {rig.geometry, rig.axis_measured, rig.timing, rad_from_deg(rig.modes.sweep_angle_deg)};
+  const bool keep_readings = rig.axis_measured;  // the mounting is judged by them
+  return {rig.geometry, rig.axis_measured, rig.timing, rad_from_deg(rig.modes.sweep_angle_deg),
+          keep_readings};
 }
 
 // Assembler and corrector, one after the other.
@@ -68,6 +70,7 @@ class Stages {
     processed.sweep = assembled.sweep;
     processed.raw = assembled.cloud;
     processed.cloud = std::move(assembled.cloud);
+    processed.readings = std::move(assembled.readings);
     processed.attitude = corrector_.correct(processed.sweep, processed.cloud);
     last_ = std::move(processed);
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -11,6 +12,8 @@
 #include "components/cloud_assembler/assembler.hpp"
 #include "components/common/calibration_file.hpp"
 #include "components/common/program.hpp"
+#include "components/swivel/offline/mounting_json.hpp"
+#include "components/swivel/offline/mounting_pictures.hpp"
 #include "components/swivel/offline/offline_pipeline.hpp"
 #include "components/swivel/offline/text_file.hpp"
 #include "hardware/io/clock.hpp"
@@ -30,14 +33,8 @@ struct RecordedView {
 struct FittedView {
   RecordedView view;  // its readings are gone
   MountingResult result;
+  std::optional<std::vector<double>> roof_m;
 };
-
-// The direction is the sweep's: a stop-and-go line stands still.
-bool mark_direction(SweepReadings& readings) {
-  const bool down = readings.lines.back().axis_angle_rad < readings.lines.front().axis_angle_rad;
-  for (LineOfReadings& line : readings.lines) line.turning_down = down;
-  return down;
-}
 
 // A sweep down that follows one up saw the same surroundings: both together show hysteresis.
 bool continues(const RecordedView& before, const SweepReadings& readings) {
@@ -56,7 +53,6 @@ std::vector<RecordedView> views_of(Recording& recording, const RigFile& rig, boo
     if (!assembled.sweep.reason().empty())
       std::cout << "sweep " << index << ": " << assembled.sweep.reason() << std::endl;
     if (assembled.readings.lines.empty()) return;
-    mark_direction(assembled.readings);
     if (!per_sweep && rig.axis_measured && !views.empty() &&
         continues(views.back(), assembled.readings)) {
       auto& lines = views.back().readings.lines;
@@ -75,63 +71,13 @@ std::string name_of_sweeps(const std::vector<std::size_t>& sweeps) {
   return fmt::format("sweep{} {}", sweeps.size() == 1 ? "" : "s", fmt::join(sweeps, ", "));
 }
 
-void put(Json& json, const std::string& name, const std::string& unit, const MountingFit& fit,
-         MountingValue value, double per_unit) {
-  json[name + "_" + unit] = per_unit * fit.solution.value[value];
-  json[name + "_sigma_" + unit] = per_unit * fit.sigma_of(value);
-}
-
-void put_values(Json& json, const MountingFit& fit) {
-  put(json, "bias", "deg", fit, kMountingBias, deg_from_rad(1.0));
-  put(json, "ry", "deg", fit, kMountingTilt, deg_from_rad(1.0));
-  put(json, "tx", "mm", fit, kMountingLeverX, mm_from_m(1.0));
-  put(json, "ty", "mm", fit, kMountingLeverY, mm_from_m(1.0));
-  if (is_seen(fit.solution, kAxisHysteresis))
-    put(json, "hysteresis", "deg", fit, kAxisHysteresis, deg_from_rad(1.0));
-  if (is_seen(fit.solution, kRangeOffset))
-    put(json, "range_offset", "mm", fit, kRangeOffset, mm_from_m(1.0));
-}
-
-Json steps_of(const MountingFit& fit) {
-  const SymmetricRaysFit& rays = fit.symmetric_rays;
-  Json steps;
-  steps["symmetric_rays"] = {{"bias_deg", deg_from_rad(rays.bias_rad)},
-                             {"bias_sigma_deg", deg_from_rad(rays.sigma_rad)},
-                             {"verified", rays.verified},
-                             {"second_half_off_deg", deg_from_rad(rays.second_half_off_rad)},
-                             {"pairs", rays.pairs},
-                             {"attempts", rays.attempts},
-                             {"reason", rays.reason}};
-  if (!fit.half_scans) return steps;
-  const MountingVector& value = fit.half_scans->solution.value;
-  steps["half_scans"] = {{"bias_deg", deg_from_rad(value[kMountingBias])},
-                         {"ry_deg", deg_from_rad(value[kMountingTilt])},
-                         {"tx_mm", mm_from_m(value[kMountingLeverX])},
-                         {"ty_mm", mm_from_m(value[kMountingLeverY])},
-                         {"cells", fit.half_scans->cells}};
-  return steps;
-}
-
-Json to_json(const std::vector<std::size_t>& sweeps, const MountingFit& fit) {
+Json to_json(const FittedView& fitted) {
   Json json;
-  if (sweeps.size() == 1) json["sweep"] = sweeps.front();
-  json["sweeps"] = sweeps;
-  put_values(json, fit);
-  json["unobservable"] = fit.unobservable;
-  json["advice"] = fit.advice;
-  json["residual_mm"] = mm_from_m(fit.residual_m);
-  if (fit.thickness_m > 0.0) {
-    json["largest_planes_nominal_mm"] = mm_from_m(fit.nominal_thickness_m);
-    json["largest_planes_mm"] = mm_from_m(fit.thickness_m);
+  if (fitted.result.fit) {
+    json = mounting_json(fitted.view.sweeps, *fitted.result.fit);
+    if (fitted.roof_m) json["roof_mean_deviation_mm"] = roof_json(*fitted.roof_m);
+    return json;
   }
-  json["rays_on_planes"] = fit.rays;
-  json["cells_seen_twice"] = fit.cells;
-  if (fit.symmetric_rays.attempts > 0 || fit.half_scans) json["steps"] = steps_of(fit);
-  return json;
-}
-
-Json refused_to_json(const FittedView& fitted) {
-  Json json;
   if (fitted.view.sweeps.size() == 1) json["sweep"] = fitted.view.sweeps.front();
   json["sweeps"] = fitted.view.sweeps;
   json["refused"] = fitted.result.reason;
@@ -151,12 +97,14 @@ class MountingOutput {
 
   void add_each(const std::vector<FittedView>& fitted) {
     for (const FittedView& each : fitted) {
-      report_["sweeps"].push_back(each.result.fit ? to_json(each.view.sweeps, *each.result.fit)
-                                                  : refused_to_json(each));
+      report_["sweeps"].push_back(to_json(each));
     }
   }
-  void add_joint(const std::vector<std::size_t>& sweeps, const JointMounting& joint) {
-    Json json = to_json(sweeps, joint.fit);
+  void add_joint(const std::vector<std::size_t>& sweeps, const JointMounting& joint,
+                 const std::vector<FittedView>& fitted) {
+    Json json = mounting_json(sweeps, joint.fit);
+    if (fitted.size() == 1 && fitted.front().roof_m)
+      json["roof_mean_deviation_mm"] = roof_json(*fitted.front().roof_m);
     json["chi_square"] = joint.scatter.sum;
     json["degrees_of_freedom"] = joint.scatter.freedom;
     report_["sweeps"].push_back(std::move(json));
@@ -214,22 +162,25 @@ void finish_together(const std::vector<FittedView>& fitted, const RigFile& rig,
     output.finish();
     throw ExitError(kExitBadData, words);
   }
-  output.add_joint(sweeps, joint);
+  output.add_joint(sweeps, joint, fitted);
   const auto outcome = together.fit({}, now_ns());
   std::cout << outcome.words << std::endl;
   output.finish();
   if (outcome.calibration) output.save(*outcome.calibration, "calibration.yaml");
 }
 
-std::vector<FittedView> fit_each(std::vector<RecordedView> views, const RigFile& rig) {
+std::vector<FittedView> fit_each(std::vector<RecordedView> views, const RigFile& rig,
+                                 MountingPictures& pictures) {
   std::vector<FittedView> fitted;
   for (RecordedView& view : views) {
     MountingResult result = fit_mounting(view.readings, rig.geometry);
+    std::optional<std::vector<double>> roof_m;
+    if (result.fit) roof_m = pictures.add(view.sweeps.front(), view.readings, *result.fit);
     view.readings.lines.clear();
     std::cout << name_of_sweeps(view.sweeps) << ": "
               << (result.fit ? mounting_in_words(*result.fit) : "left out: " + result.reason)
               << std::endl;
-    fitted.push_back({std::move(view), std::move(result)});
+    fitted.push_back({std::move(view), std::move(result), std::move(roof_m)});
   }
   return fitted;
 }
@@ -240,7 +191,10 @@ void calibrate_recorded_mounting(const RecordedMountingOptions& options) {
   Recording recording = open_recording(options.recording);
   const RigFile rig = rig_of(recording.facts(), options.recording, options.rig_file);
   MountingOutput output(options, rig);
-  const auto fitted = fit_each(views_of(recording, rig, options.per_sweep), rig);
+  const std::string title = std::filesystem::path(options.recording).lexically_normal().filename();
+  MountingPictures pictures(options.folder, title, rig.geometry);
+  const auto fitted = fit_each(views_of(recording, rig, options.per_sweep), rig, pictures);
+  pictures.draw_biases({});
   const bool any = std::any_of(fitted.begin(), fitted.end(),
                                [](const FittedView& each) { return each.result.fit.has_value(); });
   if (!any) {

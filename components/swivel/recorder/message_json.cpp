@@ -104,6 +104,8 @@ Json to_json(const msg::Calibration& calibration) {
           {"bias_deg", calibration.bias_deg()},
           {"mounting_xyz_mm", calibration.mounting_xyz_mm()},
           {"mounting_rpy_deg", calibration.mounting_rpy_deg()},
+          {"hysteresis_deg", calibration.hysteresis_deg()},
+          {"hysteresis_sigma_deg", calibration.hysteresis_sigma_deg()},
           {"covariance", calibration.covariance()},
           {"residual_deg", calibration.residual_deg()},
           {"chi_square", calibration.chi_square()},

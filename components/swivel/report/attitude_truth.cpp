@@ -26,4 +26,9 @@ std::optional<double> AttitudeTruth::alpha_deg() const {
   return found == case_.end() ? bench_.number("alpha_deg") : std::optional(found->second);
 }
 
+std::optional<double> AttitudeTruth::bias_deg(std::size_t sweep) const {
+  const auto found = case_.find("sweep" + std::to_string(sweep) + "_obs_rx_deg");
+  return found == case_.end() ? bench_.number("bias_deg") : std::optional(-found->second);
+}
+
 }  // namespace swivel

@@ -1,5 +1,6 @@
 // What a simulator wrote beside its recording: where each sweep really began.
-//   a case's truth.csv     key,value: alpha_deg, sweep0_phi_start_deg, sweep1_...
+//   a case's truth.csv     key,value: alpha_deg, sweep0_phi_start_deg, sweep1_...; of a pan rig
+//                          sweep0_obs_rx_deg, the roll that a bias is one with
 //   swivel-bench --truth   as TruthFile reads it
 #pragma once
 
@@ -20,6 +21,8 @@ class AttitudeTruth {
   // Azimuth in O at which the sweep began: what phi_offset should say. sweep: counted from 0.
   std::optional<double> phi_start_deg(std::size_t sweep, std::uint32_t device_stamp_ms) const;
   std::optional<double> alpha_deg() const;
+  // Of the centreline, the mounting's roll in it.
+  std::optional<double> bias_deg(std::size_t sweep) const;
 
  private:
   std::map<std::string, double> case_;

@@ -58,7 +58,8 @@ SweepEvaluator::SweepEvaluator(std::string folder, std::string title, const RigF
       title_(std::move(title)),
       rig_(rig),
       pictures_(folder_, title_, rig_),
-      room_yaw_rad_(rad_from_deg(room_yaw_deg)) {
+      room_yaw_rad_(rad_from_deg(room_yaw_deg)),
+      mounting_(folder_, title_, rig.geometry) {
   evaluation_.axis_measured = rig.axis_measured;
 }
 
@@ -71,7 +72,7 @@ nlohmann::ordered_json SweepEvaluator::add(const ProcessedSweep& processed) {
   walls_.push_back(planes_of(surfaces));
   device_stamps_ms_.push_back(processed.sweep.first_device_stamp_ms());
   if (!processed.cloud.points.empty()) pictures_.draw(processed, surfaces);
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = mounting_.add(processed);
   json["surfaces"] = surfaces_json(surfaces);
   return json;
 }
@@ -201,6 +202,7 @@ void SweepEvaluator::finish(const std::optional<AttitudeTruth>& truth, OutputFol
   judge_errors(truth);
   output.note("evaluation", evaluation_json(evaluation_));
   std::vector<Figure> figures = figures_of_all();
+  for (Figure& figure : mounting_.figures(truth)) figures.push_back(std::move(figure));
   for (Figure& figure : figures_of_sweeps()) figures.push_back(std::move(figure));
   write_text_file(folder_ + "/report.html", report_page(page_head(), evaluation_, figures));
 }

@@ -12,6 +12,7 @@
 #include "components/swivel/offline/processed_sweep.hpp"
 #include "components/swivel/report/attitude_truth.hpp"
 #include "components/swivel/report/findings.hpp"
+#include "components/swivel/report/mounting_evaluator.hpp"
 #include "components/swivel/report/report_page.hpp"
 #include "components/swivel/report/surfaces.hpp"
 #include "components/swivel/report/sweep_pictures.hpp"
@@ -43,6 +44,7 @@ class SweepEvaluator {
   SweepPictures pictures_;
   double room_yaw_rad_;
   Evaluation evaluation_;
+  MountingEvaluator mounting_;
   std::vector<std::vector<Plane>> walls_;        // a sweep each
   std::vector<std::uint32_t> device_stamps_ms_;  // likewise
 };

@@ -162,6 +162,21 @@ TEST_F(MountingRun, WithoutAWholeSweepItIsRefused) {
   EXPECT_THAT(told_.back().words(), HasSubstr("no sweep"));
 }
 
+// As where the participant is stopped: a fit under way takes seconds, and its end is waited for.
+TEST(MountingRunStopped, AFitThatNobodyWantsAnyMoreEndsAtTheNextStep) {
+  PanScan scan;
+  scan.lines = 180;
+  const SweepReadings readings = scan_of(scan);
+  int asked = 0;
+  const MountingResult result = fit_mounting(readings, RigGeometry(), [&asked] {
+    ++asked;
+    return true;
+  });
+  EXPECT_FALSE(result.fit);
+  EXPECT_EQ(result.reason, "cancelled");
+  EXPECT_LE(asked, 4) << "no step was taken";
+}
+
 TEST_F(MountingRun, AlphaOfARigWithoutAPlateIsRefused) {
   msg::CalibrationRequest request;
   request.request_id(8);

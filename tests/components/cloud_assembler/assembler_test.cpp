@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "calibration/transform_cloud.hpp"
 #include "tests/components/cloud_assembler/story.hpp"
 
 namespace swivel {
@@ -134,6 +135,35 @@ TEST(Assembler, KeepsWhatTheCloudWasMadeOf) {
     }
   }
   expect_same(stage.sweeps[0].cloud, cloud);
+}
+
+TEST(Assembler, ASweepDownIsTurnedByTheHysteresisAndOneUpIsNot) {
+  for (const bool down : {false, true}) {
+    Story story;
+    story.speed_deg_s = down ? -45.0 : 45.0;
+    AssemblyOptions options = story_options();
+    options.axis_measured = true;
+    options.keep_readings = true;
+    options.geometry.hysteresis_rad = 0.01;
+    msg::Axis axis = story.axis();
+    axis.source(msg::AXIS_MEASURED);
+    const auto sweep_by = [&](const AssemblyOptions& how) {
+      Stage stage(how);
+      stage.add(axis);
+      stage.add(story.cruising());
+      stage.add_lines(story, 0, 12);
+      return std::move(stage.sweeps.at(0));
+    };
+    const AssembledSweep with = sweep_by(options);
+    options.geometry.hysteresis_rad = 0.0;
+    AssembledSweep expected = sweep_by(options);
+    const Eigen::Isometry3d& T_base_axis = story_geometry().T_base_axis;
+    const Eigen::AngleAxisd turn(down ? 0.01 : 0.0, Eigen::Vector3d::UnitZ());
+    transform_cloud(T_base_axis * turn * T_base_axis.inverse(), expected.cloud);
+    expect_same(with.cloud, expected.cloud);
+    EXPECT_EQ(with.readings.lines[3].axis_angle_rad, expected.readings.lines[3].axis_angle_rad);
+    EXPECT_EQ(with.readings.lines[3].turning_down, down);
+  }
 }
 
 TEST(Assembler, AnAxisThatIsNotStraightInsideALineIsFollowedBeamByBeam) {

@@ -65,6 +65,7 @@ msg::Sweep Story::phase(msg::SweepPhase phase, const std::string& reason) const 
   sweep.sweep_id(sweep_id);
   sweep.phase(phase);
   sweep.mode(3);
+  sweep.speed_deg_s(speed_deg_s);
   sweep.lines_expected(lines);
   sweep.window_start_ns(window_start_ns());
   sweep.window_end_ns(window_end_ns());

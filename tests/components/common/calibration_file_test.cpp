@@ -42,6 +42,8 @@ msg::Calibration awkward_calibration() {
   calibration.bias_deg(-1.0 / 7.0);
   calibration.mounting_xyz_mm({13.9, -0.1 / 3.0, 1e-17});
   calibration.mounting_rpy_deg({0.1, 0.2, -180.0});
+  calibration.hysteresis_deg(1.0 / 7.0);
+  calibration.hysteresis_sigma_deg(0.01 / 3.0);
   for (std::size_t index = 0; index < calibration.covariance().size(); ++index) {
     calibration.covariance()[index] = 1.0 / (3.0 + static_cast<double>(index));
   }
@@ -69,7 +71,7 @@ TEST_F(CalibrationFile, ComesBackExactly) {
   EXPECT_DOUBLE_EQ(alpha_sigma_deg(saved), std::sqrt(1.0 / 3.0));
 }
 
-TEST_F(CalibrationFile, OneFromBeforeThereWasATestIsRead) {
+TEST_F(CalibrationFile, OneFromBeforeThereWasATestOrAHysteresisIsRead) {
   const std::string path = folder_ / "rig.yaml";
   ASSERT_EQ(save_calibration(awkward_calibration(), path), "");
   std::ostringstream whole;
@@ -77,9 +79,13 @@ TEST_F(CalibrationFile, OneFromBeforeThereWasATestIsRead) {
   std::string text = whole.str();
   const auto start = text.find("chi_square");
   text.erase(start, text.find("sweeps_used") - start);
+  const auto hysteresis = text.find("hysteresis_deg");
+  text.erase(hysteresis, text.find("residual_deg") - hysteresis);
   msg::Calibration expected = load_calibration(path);
   expected.chi_square(0.0);
   expected.degrees_of_freedom(0);
+  expected.hysteresis_deg(0.0);
+  expected.hysteresis_sigma_deg(0.0);
   EXPECT_TRUE(load_calibration(write(text)) == expected);
 }
 

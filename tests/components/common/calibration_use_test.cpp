@@ -43,6 +43,7 @@ TEST(CalibrationUse, AMountingComesOutAsItWentIn) {
   const RigGeometry told = calibrated_geometry(drawn, of_mounting());
   EXPECT_LT((told.T_axis_lidar.matrix() - unlike_rig().T_axis_lidar.matrix()).norm(), 1e-12);
   EXPECT_NEAR(told.bias_rad, unlike_rig().bias_rad, 1e-15);
+  EXPECT_NEAR(told.hysteresis_rad, unlike_rig().hysteresis_rad, 1e-15);
   EXPECT_EQ(told.T_base_axis.matrix(), drawn.T_base_axis.matrix());
 }
 

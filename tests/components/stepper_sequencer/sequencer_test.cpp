@@ -103,6 +103,18 @@ TEST(Sequencer, EveryModesWindowLiesInTheTrueConstantSpeed) {
   expect_never_beyond_the_cable(rig);
 }
 
+TEST(Sequencer, AnOkThatIsReadLateMovesTheWindowNotTheTurn) {
+  GrblDoubleOptions late_ok;
+  late_ok.turn_delay_s = -0.45;  // by then a window counted from the ok ends beyond constant speed
+  SequencerRig rig(late_ok);
+  ASSERT_TRUE(rig.ready());
+  rig.ask(1, 1);
+  ASSERT_TRUE(rig.await(msg::PHASE_CRUISING)) << rig.sweeps().back().reason();
+  expect_window_in_constant_speed(rig, rig.sweeps(msg::PHASE_CRUISING).back(), rig.axes().back());
+  ASSERT_TRUE(rig.await(msg::PHASE_IDLE, 2));
+  EXPECT_EQ(rig.sequencer.health().sweeps_done, 1U);
+}
+
 TEST(Sequencer, AWindowIsAnnouncedBeforeItsLinesAreOver) {
   SequencerRig rig;
   ASSERT_TRUE(rig.ready());

@@ -226,6 +226,21 @@ TEST(Report, OfAMeasuredAxisHasItsSurfacesAndNoPhiError) {
   EXPECT_FALSE(std::filesystem::exists(scratch.file("plate_00.png")));
 }
 
+TEST(Report, ShowsWhatEachStepOfACalibrationDoesToTheRoof) {
+  const ScratchFolder scratch;
+  const Ended ended = run(scratch, "report " + recording("pan_sparse") + " -o " + scratch.path());
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(content_of(scratch.file("report.json")));
+  const auto& mean_mm = report["sweeps"][0]["mounting"]["roof_mean_deviation_mm"];
+  EXPECT_NEAR(mean_mm["both"], 7.0, 0.7) << "a noise of 10 mm, 30 deg off the axis";
+  EXPECT_LT(mean_mm["bias alone"], 8.0) << "this rig is off by its bias only";
+  EXPECT_GT(mean_mm["as the rig file has it"], 30.0) << "4 deg";
+  EXPECT_GT(mean_mm["mounting without the bias"], 2.0 * mean_mm["both"].get<double>());
+  for (const char* name : {"roof_00.png", "roof_deviations_00.png", "bias.png"})
+    EXPECT_GT(std::filesystem::file_size(scratch.file(name)), 5000U) << name;
+  EXPECT_THAT(content_of(scratch.file("report.html")), HasSubstr("fig. 11"));
+}
+
 struct Refusal {
   std::string arguments;
   int code;
@@ -297,6 +312,28 @@ TEST(CalibrateMounting, OfARecordingIsTheTruthAndMakesItsCloudsFlat) {
                                          scratch.file("other"));
   EXPECT_EQ(refused.code, 65);
   EXPECT_THAT(refused.err, HasSubstr("zeng")) << "a calibration of another rig";
+}
+
+// A real rig, of which a few lines before and after the turn show its play and nothing else.
+TEST(CalibrateMounting, FindsThePlayOfARealAxisAndProcessTakesItOut) {
+  const ScratchFolder scratch;
+  const std::string turning = recording("tilting_room_turning.csv.gz");
+  const std::string out = scratch.file("mounting");
+  const Ended ended = run(scratch, "calibrate mounting " + turning + " -o " + out);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto found = nlohmann::json::parse(content_of(out + "/mounting.json"))["sweeps"][0];
+  EXPECT_GT(found["hysteresis_deg"], 0.05);
+  EXPECT_LT(found["hysteresis_deg"], 0.15);
+  EXPECT_LT(found["hysteresis_sigma_deg"], 0.06);
+  EXPECT_LT(found["views_apart_mm"].get<double>(),
+            0.95 * found["views_apart_nominal_mm"].get<double>());
+  const auto down = [&](const std::string& options) {
+    const std::string process =
+        "process " + turning + " --no-pictures -o " + scratch.file("clouds");
+    EXPECT_EQ(run(scratch, process + options).code, 0);
+    return content_of(scratch.file("clouds/cloud_01.ply"));
+  };
+  EXPECT_NE(down(""), down(" --calibration " + out + "/calibration.yaml"));
 }
 
 TEST(Refusals, WrongUsageIs64) {

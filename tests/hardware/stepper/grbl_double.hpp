@@ -43,7 +43,7 @@ struct GrblDoubleOptions {
   std::string banner = "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n";
   double homing_s = 0.05;
   int homing_alarm = 0;               // of the first homing; later ones succeed
-  double turn_delay_s = 0.0;          // from ok to the first step
+  double turn_delay_s = 0.0;          // from ok to the first step; below 0: the ok is read late
   std::map<std::string, int> errors;  // by the line's beginning: error codes
   bool report_work_position = false;  // as with $10=0
 };
