@@ -68,12 +68,14 @@ std::int64_t opens_ns(const SweepPlan& plan, const StepperStatus& status) {
 }  // namespace
 
 SweepDriver::SweepDriver(GrblStepper& stepper, const SweepOptions& options, double poll_interval_s,
-                         Announcer& announcer, const Interruption& interruption)
+                         Announcer& announcer, const Interruption& interruption,
+                         Heartbeat& heartbeat)
     : stepper_(stepper),
       options_(options),
       poll_interval_ns_(after(0, poll_interval_s)),
       announcer_(announcer),
-      interruption_(interruption) {}
+      interruption_(interruption),
+      heartbeat_(heartbeat) {}
 
 Outcome SweepDriver::check(const SweepPlan& plan) const {
   const bool turns_through = plan.sequence != msg::SEQUENCE_STOP_AND_GO;
@@ -208,6 +210,7 @@ bool SweepDriver::is_there(const StepperStatus& status, double angle_deg) const 
 }
 
 Result<StepperStatus> SweepDriver::look() {
+  heartbeat_.beat();
   Result<StepperStatus> status = stepper_.status();
   if (!status) return status;
   if (status->state != GrblState::kIdle && status->state != GrblState::kJog)
