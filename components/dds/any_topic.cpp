@@ -67,7 +67,8 @@ class CopiedType : public TopicDataType {
 
 template <class Message>
 AnyTopic any(const Topic<Message>& topic) {
-  return {topic.name, topic.for_ros, &make_type<Message>};
+  return {topic.name, topic.for_ros,
+          [] { return make_type<Message>(std::make_shared<Refusals>()); }};
 }
 
 TypeSupport copied_type(const AnyTopic& topic) {
