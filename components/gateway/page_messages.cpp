@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/plate_beams.hpp"
+#include "components/common/json_text.hpp"
 #include "components/swivel/live/health_json.hpp"
 
 namespace swivel {
@@ -105,8 +106,7 @@ std::string state_message(const RigFile& rig, const LiveView& view,
                              {"reason", motor.reason()}}},
                            {"answer", answer},
                            {"participants", participants_json(participants)}};
-  // Other programs' words need not be UTF-8; what goes to a browser must.
-  return state.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(state);
 }
 
 Result<PageCommand> page_command_in(const std::string& text, const RigFile& rig) {
