@@ -196,7 +196,8 @@ Outcome SweepDriver::arrive(const Turn& turn, double speed_deg_s) {
     if (idle && is_there(*status, turn.end_angle_deg)) return Done{};
     if (idle && status->asked_ns > turn.accepted_ns + kStartGraceNs)
       return Failure{"the turn ended early: " + what_it_does(*status)};
-    if (now_ns() > overdue_ns) return Failure{"the turn does not end: " + what_it_does(*status)};
+    if (status->asked_ns > overdue_ns)  // not now_ns(): the computer may have stalled since
+      return Failure{"the turn does not end: " + what_it_does(*status)};
     Outcome paused = pause_until(now_ns() + kArrivalPollNs);
     if (!paused) return paused;
   }

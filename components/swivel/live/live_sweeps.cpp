@@ -108,10 +108,10 @@ void LiveSweeps::take_assembled(const msg::Sweep& sweep) {
 
 void LiveSweeps::take_cloud(const PointCloud2& message, OrganisedCloud ProcessedSweep::*cloud) {
   const std::lock_guard lock(mutex_);
-  if (const std::string wrong = wrong_with(message); !wrong.empty()) {
-    return spdlog::warn("a cloud was refused: {}", wrong);
-  }
-  from_message(message, parts_at(stamp_ns(message)).sweep.*cloud);
+  OrganisedCloud taken;
+  const std::string wrong = from_message(message, taken);
+  if (!wrong.empty()) return spdlog::warn("a cloud was refused: {}", wrong);
+  parts_at(stamp_ns(message)).sweep.*cloud = std::move(taken);
   hand_out_if_whole(stamp_ns(message));
 }
 

@@ -50,8 +50,11 @@ class ClockStep : public ::testing::Test {
     ASSERT_TRUE(sweep);
     const auto attitude = rig().await_attitude(sweep->sweep_id(), 1.0);
     const bool good = sweep->complete() && attitude && attitude->verdict() == msg::VERDICT_GOOD;
-    if (good) expect_true(rig(), *attitude);
-    if (!good) EXPECT_NE(sweep->reason(), "");
+    if (good) {
+      expect_true(rig(), *attitude);
+    } else {
+      EXPECT_NE(sweep->reason(), "");
+    }
     expect_a_right_sweep(rig());
   }
 

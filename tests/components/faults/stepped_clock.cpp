@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -61,11 +62,28 @@ extern "C" time_t time(time_t* seconds) {
   return now.tv_sec;
 }
 
-// The kernel waits by its own clock.
+namespace {
+
+// The kernel waits by its own clock. Much counts from the boot instead, and is left alone: no
+// computer runs for 30 years.
+timespec by_the_kernel(const timespec& until) {
+  const bool since_boot = until.tv_sec < 1'000'000'000;
+  return since_boot ? until : moved(until, -offset_ns());
+}
+
+}  // namespace
+
 extern "C" int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex,
                                       const timespec* until) {
   using Wait = int (*)(pthread_cond_t*, pthread_mutex_t*, const timespec*);
   static const Wait wait = reinterpret_cast<Wait>(dlsym(RTLD_NEXT, "pthread_cond_timedwait"));
-  const timespec true_until = moved(*until, -offset_ns());
+  const timespec true_until = by_the_kernel(*until);
   return wait(condition, mutex, &true_until);
+}
+
+extern "C" int sem_timedwait(sem_t* semaphore, const timespec* until) {
+  using Wait = int (*)(sem_t*, const timespec*);
+  static const Wait wait = reinterpret_cast<Wait>(dlsym(RTLD_NEXT, "sem_timedwait"));
+  const timespec true_until = by_the_kernel(*until);
+  return wait(semaphore, &true_until);
 }
