@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <ostream>
 
+#include "tests/components/swivel/scratch_folder.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace swivel::fuzz {
@@ -23,8 +22,7 @@ TEST_P(Replay, OfTheCorpus) {
   const std::string folder = std::string(SWIVEL_TEST_DATA "/fuzz/") + std::string(GetParam().name);
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::string bytes = content_of(entry.path());
     SCOPED_TRACE(entry.path().string());
     GetParam().run(bytes);
     for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 50)
