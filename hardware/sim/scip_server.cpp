@@ -63,7 +63,7 @@ void ScipServer::listen() {
     fail("cannot listen on 127.0.0.1:" + std::to_string(port_) +
          " for the lidar's clients; choose another --port");
   }
-  port_ = ntohs(address.sin_port);
+  if (port_ == 0) port_ = ntohs(address.sin_port);  // once: others may ask for it from then on
   listener_ = std::move(listener);
 }
 

@@ -22,7 +22,20 @@ void GrblStepper::forget_connection() {
 
 Outcome GrblStepper::write(std::string_view bytes) {
   if (!stream_) return Failure{options_.address + ": not connected"};
-  return stream_->write_all(bytes, kWriteTimeout);
+  Outcome written = stream_->write_all(bytes, kWriteTimeout);
+  if (written) return written;
+  homed_ = false;
+  // Whether it only takes nothing, or is gone: what is gone has nothing to read either.
+  const Received rest = stream_->read_some(Milliseconds::zero());
+  const bool gone = rest.kind == Received::Kind::kClosed || rest.kind == Received::Kind::kError;
+  if (gone) lose(rest.reason);
+  return written;
+}
+
+void GrblStepper::lose(const std::string& reason) {
+  lost_reason_ = reason;
+  stream_.reset();
+  homed_ = false;
 }
 
 GrblStepper::Heard GrblStepper::listen(Milliseconds timeout, const std::function<bool()>& heard,
@@ -35,9 +48,7 @@ GrblStepper::Heard GrblStepper::listen(Milliseconds timeout, const std::function
     const Received received = stream_->read_some(left, stop);
     if (received.kind == Received::Kind::kInterrupted) return Heard::kInterrupted;
     if (received.kind == Received::Kind::kClosed || received.kind == Received::Kind::kError) {
-      lost_reason_ = received.reason;
-      stream_.reset();
-      homed_ = false;
+      lose(received.reason);
       return Heard::kLost;
     }
     for (const GrblMessage& message : parser_.push(received.bytes)) take(message);
