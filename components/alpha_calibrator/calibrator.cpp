@@ -142,7 +142,10 @@ void Calibrator::take(const PointCloud2Message& raw_cloud) {
   auto* const alpha = run_ ? std::get_if<AlphaRun>(&run_->kind) : nullptr;
   if (alpha == nullptr) return;
   cloud_stamp_ns_.reset();
-  if (!from_message(raw_cloud, cloud_).empty()) return;
+  if (!from_message(raw_cloud, cloud_).empty()) {
+    ++clouds_refused_;
+    return;
+  }
   cloud_stamp_ns_ = stamp_ns(raw_cloud);
   match(*alpha);
 }

@@ -52,6 +52,7 @@ class Calibrator {
   void check(std::chrono::steady_clock::time_point now);
 
   bool running() const { return run_.has_value(); }
+  std::uint64_t clouds_refused() const { return clouds_refused_; }
 
  private:
   struct AlphaRun {
@@ -111,6 +112,7 @@ class Calibrator {
   std::uint64_t last_request_id_ = 0;
   OrganisedCloud cloud_;  // the last one, and its stamp
   std::optional<std::int64_t> cloud_stamp_ns_;
+  std::uint64_t clouds_refused_ = 0;
   bool news_ = false;
   std::chrono::steady_clock::time_point last_news_{};
 };

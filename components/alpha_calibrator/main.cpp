@@ -92,6 +92,7 @@ void calibrate(const CommonOptions& options, const std::string& calibration_path
   participant.subscribe<PointCloud2>(kRawCloudTopic, take);
   participant.on_tick(std::chrono::seconds(1), [&] {
     calibrator.check(std::chrono::steady_clock::now());
+    health.set_counter("clouds_refused", calibrator.clouds_refused());
     health.set_state(msg::HEALTH_OK,
                      calibrator.running() ? "calibrating" : "waiting for a request");
   });

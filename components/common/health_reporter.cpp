@@ -85,6 +85,7 @@ void HealthReporter::feed_watchdog() const {
 
 void HealthReporter::publish() {
   counters_["samples_lost"] = participant_.samples_lost();
+  counters_["samples_refused"] = participant_.samples_refused();
   health_.time_ns(now_ns());
   health_.counters().clear();
   for (const auto& [name, value] : counters_) {

@@ -7,10 +7,19 @@ namespace swivel {
 
 using std::chrono::steady_clock;
 
+namespace {
+
+// Of one rig. Names are a writer's own choice, and a hostile one's without end.
+constexpr std::size_t kMostParticipants = 256;
+
+}  // namespace
+
 Roll::Roll(Participant& participant) {
   participant.subscribe<msg::Health>(kHealthTopic, [this](const msg::Health& health) {
     const std::lock_guard lock(mutex_);
     const auto now = steady_clock::now();
+    const bool known = entries_.count(health.participant().to_string()) != 0;
+    if (!known && entries_.size() == kMostParticipants) return;
     RollEntry& entry = entries_[health.participant().to_string()];
     const bool other_process = entry.last.process_id() != health.process_id();
     if (other_process) entry = {health, health, now, now};
@@ -51,7 +60,8 @@ std::string Roll::await(const std::vector<std::string>& names,
 std::optional<double> RollEntry::rate(const std::string& counter) const {
   const auto before = counter_of(first, counter);
   const auto after = counter_of(last, counter);
-  const double passed_s = static_cast<double>(last.time_ns() - first.time_ns()) * 1e-9;
+  const double passed_s =
+      (static_cast<double>(last.time_ns()) - static_cast<double>(first.time_ns())) * 1e-9;
   if (!before || !after || *after < *before || passed_s <= 0.0) return std::nullopt;
   return static_cast<double>(*after - *before) / passed_s;
 }

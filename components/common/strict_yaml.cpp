@@ -1,5 +1,7 @@
 #include "components/common/strict_yaml.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -22,6 +24,48 @@ std::string read_whole(const std::string& path) {
     throw ConfigurationError(path + ": larger than 1 MiB; is this the right file?");
   }
   return text;
+}
+
+// yaml-cpp reads some texts of unmatched brackets without end, and remembers each step. But there
+// is no more in a text than its characters can begin and end.
+class EventLimit : public YAML::EventHandler {
+ public:
+  explicit EventLimit(std::size_t characters) : left_(4 * characters + 100) {}
+
+  void OnDocumentStart(const YAML::Mark& mark) override { count(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string&) override {
+    count(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void count(const YAML::Mark& mark) {
+    if (left_-- == 0)
+      throw YAML::ParserException(mark, "cannot be read; are all brackets and braces matched?");
+  }
+
+  std::size_t left_;
+};
+
+void require_an_end(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  EventLimit limit(text.size());
+  while (parser.HandleNextDocument(limit)) {
+  }
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -52,6 +96,7 @@ std::string shortest(double value) {
 YamlSection YamlSection::load(const std::string& path) {
   const std::string text = read_whole(path);
   try {
+    require_an_end(text);
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.empty()) throw ConfigurationError(path + ":1: the file is empty");
     if (documents.size() > 1) {

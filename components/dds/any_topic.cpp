@@ -1,7 +1,5 @@
 #include "components/dds/any_topic.hpp"
 
-#include <fastcdr/exceptions/Exception.h>
-
 #include <algorithm>
 #include <cstring>
 #include <sstream>
@@ -67,7 +65,8 @@ class CopiedType : public TopicDataType {
 
 template <class Message>
 AnyTopic any(const Topic<Message>& topic) {
-  return {topic.name, topic.for_ros, &make_type<Message>};
+  return {topic.name, topic.for_ros,
+          [] { return make_type<Message>(std::make_shared<Refusals>()); }};
 }
 
 TypeSupport copied_type(const AnyTopic& topic) {
@@ -146,12 +145,7 @@ bool decode_cdr(TopicDataType& type, std::string_view cdr, void* message) {
   SerializedPayload_t payload;
   payload.data = reinterpret_cast<unsigned char*>(const_cast<char*>(cdr.data()));
   payload.length = payload.max_size = static_cast<std::uint32_t>(cdr.size());
-  bool decoded = false;
-  try {
-    decoded = type.deserialize(&payload, message);
-  } catch (const eprosima::fastcdr::exception::Exception&) {
-    // Not even the heading is one of CDR.
-  }
+  const bool decoded = type.deserialize(&payload, message);
   payload.data = nullptr;  // it is not the payload's own
   return decoded;
 }

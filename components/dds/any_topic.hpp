@@ -42,12 +42,12 @@ class CdrWriter : public AnyWriter {
   bool write(const std::string& cdr);
 };
 
-// False where the bytes are no such message; they may say anything.
+// False where the bytes are no such message; they may say anything where the type is a wary one.
 bool decode_cdr(eprosima::fastdds::dds::TopicDataType& type, std::string_view cdr, void* message);
 
 template <class Message>
 std::optional<Message> decode_cdr(std::string_view cdr) {
-  typename TypeSupportOf<Message>::Type type;
+  WaryType<Message> type(std::make_shared<Refusals>());
   Message message;
   if (!decode_cdr(type, cdr, &message)) return std::nullopt;
   return message;

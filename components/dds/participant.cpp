@@ -236,6 +236,7 @@ void Participant::run() {
       if (stopping_) break;
       handle(*endpoint);
     }
+    report_refusals();
   }
 }
 
@@ -305,6 +306,12 @@ void Participant::report_peers() {
     } else if (news.status == ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
       warn(news.name + " vanished: no sign of life for 5 s; did it crash, is the network down?");
     }
+  }
+}
+
+void Participant::report_refusals() {
+  for (const auto& [type, count] : refusals_->take_news()) {
+    warn(std::to_string(count) + " samples refused: they are no " + type + ", or too large");
   }
 }
 

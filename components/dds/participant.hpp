@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "components/dds/topics.hpp"
+#include "components/dds/wary_type.hpp"
 
 namespace swivel {
 
@@ -92,6 +93,8 @@ class Participant {
   const std::string& name() const { return options_.name; }
   // Samples that a writer sent and we did not get, over all topics.
   std::uint64_t samples_lost() const { return samples_lost_; }
+  // Samples that came and are no message of their topic, or too large for one.
+  std::uint64_t samples_refused() const { return refusals_->total(); }
 
  private:
   template <class Message>
@@ -115,6 +118,7 @@ class Participant {
   void handle_reader_status(Endpoint& endpoint);
   void handle_writer_status(Endpoint& endpoint);
   void report_peers();
+  void report_refusals();
   std::chrono::milliseconds run_ticks();
 
   ParticipantOptions options_;
@@ -132,6 +136,7 @@ class Participant {
   std::vector<Tick> ticks_;
   std::function<void(const std::string&)> on_problem_;
   std::atomic<std::uint64_t> samples_lost_{0};
+  std::shared_ptr<Refusals> refusals_ = std::make_shared<Refusals>();
   eprosima::fastdds::dds::WaitSet wait_set_;
   eprosima::fastdds::dds::GuardCondition woken_;
   std::atomic<bool> stopping_{false};
@@ -142,8 +147,8 @@ class Participant {
 // crashes where that is a sequence of structs it does not know: with it, a subscriber to one of
 // our topics would be killed by our other topics.
 template <class Message>
-eprosima::fastdds::dds::TypeSupport make_type() {
-  eprosima::fastdds::dds::TypeSupport type(new typename TypeSupportOf<Message>::Type());
+eprosima::fastdds::dds::TypeSupport make_type(std::shared_ptr<Refusals> refusals) {
+  eprosima::fastdds::dds::TypeSupport type(new WaryType<Message>(std::move(refusals)));
   type->auto_fill_type_object(false);
   type->auto_fill_type_information(false);
   return type;
@@ -167,7 +172,7 @@ class Writer : public AnyWriter {
  public:
   Writer(Participant& participant, const swivel::Topic<Message>& topic)
       : AnyWriter(participant.make_writer(topic.full_name(participant.rig()), topic.name,
-                                          make_type<Message>())),
+                                          make_type<Message>(participant.refusals_))),
         rig_(participant.rig()) {}
 
   // Fills rig and sequence number. False if it could not be sent within the topic's
@@ -199,7 +204,7 @@ void Participant::subscribe(const swivel::Topic<Message>& topic,
                             std::function<void(const Message&)> callback) {
   using eprosima::fastdds::dds::SampleInfo;
   const std::string name = topic.full_name(options_.rig);
-  auto* const reader = make_reader(name, topic.name, make_type<Message>());
+  auto* const reader = make_reader(name, topic.name, make_type<Message>(refusals_));
   // The message is kept from sample to sample: a cloud's 11 MB are allocated once.
   auto message = std::make_shared<Message>();
   auto last_numbers =

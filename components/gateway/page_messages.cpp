@@ -4,6 +4,7 @@
 
 #include "calibration/plate_beams.hpp"
 #include "components/common/health_json.hpp"
+#include "components/common/json_text.hpp"
 #include "components/common/phase_word.hpp"
 
 namespace swivel {
@@ -85,8 +86,7 @@ std::string state_message(const RigFile& rig, const LiveView& view,
                              {"reason", motor.reason()}}},
                            {"answer", answer},
                            {"participants", participants_json(participants)}};
-  // Other programs' words need not be UTF-8; what goes to a browser must.
-  return state.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(state);
 }
 
 Result<PageCommand> page_command_in(const std::string& text, const RigFile& rig) {

@@ -2,10 +2,10 @@
 // times and knows nothing of sweeps.
 #include <spdlog/spdlog.h>
 
-#include <atomic>
 #include <thread>
 
 #include "components/common/health_reporter.hpp"
+#include "components/common/heartbeat.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/common/strict_yaml.hpp"
@@ -15,6 +15,9 @@
 namespace {
 
 using namespace swivel;
+
+// The session waits 10 s before another attempt, and then for each answer in turn.
+constexpr auto kLongestSilence = std::chrono::seconds(60);
 
 msg::ScanLine to_message(const LidarScan& scan) {
   msg::ScanLine line;
@@ -87,21 +90,6 @@ void name_lidar(const std::optional<LidarIdentity>& lidar, HealthReporter& healt
   health.set_fact("firmware", lidar->firmware);
 }
 
-// When the session with the lidar last said anything: a scan, or how it stands.
-class LastWord {
- public:
-  void note() { time_ = Clock::now().time_since_epoch().count(); }
-  bool is_recent() const {
-    return Clock::now().time_since_epoch() - Clock::duration(time_) < kLongestSilence;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  // It waits 10 s before another attempt, and then for each answer in turn.
-  static constexpr auto kLongestSilence = std::chrono::seconds(60);
-  std::atomic<Clock::rep> time_{Clock::now().time_since_epoch().count()};
-};
-
 LidarSection lidar_of(const RigFile& rig, const std::string& address) {
   if (!rig.lidar) throw ConfigurationError(rig.path + ": has no 'lidar' section to read from");
   LidarSection lidar = *rig.lidar;
@@ -116,16 +104,16 @@ void read(const CommonOptions& options, const std::string& address, StopSignal& 
   HealthReporter health(participant);
   Writer<msg::ScanLine> lines(participant, kScanLineTopic);
   WirePublisher wire(participant, msg::WIRE_OF_LIDAR);
-  LastWord last_word;
-  health.watch_over([&] { return last_word.is_recent(); });
+  Heartbeat session_works;  // it says a scan, or how it stands
+  health.watch_over([&] { return session_works.was_within(kLongestSilence); });
   ScipClient client(
       client_options(lidar, wire.tap()),
       [&](const LidarScan& scan) {
-        last_word.note();
+        session_works.beat();
         lines.write(to_message(scan));
       },
       [&](const LidarReport& report) {
-        last_word.note();
+        session_works.beat();
         tell(report, health);
       });
   participant.on_tick(std::chrono::milliseconds(500), [&] {

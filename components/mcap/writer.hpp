@@ -32,6 +32,7 @@ class McapWriter {
 
   const std::string& name() const { return file_.name(); }
   std::uint64_t size_bytes() const { return file_.size() + chunk_.size(); }
+  bool is_all_safe() const { return chunk_index_.empty(); }
 
  private:
   explicit McapWriter(OutputFile file) : file_(std::move(file)) {}

@@ -98,6 +98,7 @@ void sequence(const CommonOptions& options, const std::string& address, StopSign
                          sweeps.write(msg::Sweep(sweep));
                        },
                        [&](const msg::Axis& samples) { axis.write(msg::Axis(samples)); }});
+  health.watch_over([&] { return sequencer.works(); });
   participant.subscribe<msg::SweepRequest>(
       kSweepRequestTopic, [&](const auto& request) { sequencer.request(request); });
   participant.on_tick(std::chrono::milliseconds(200), [&] {

@@ -13,7 +13,8 @@ Sequencer::Sequencer(SequencerOptions options, SequencerOutputs outputs)
     : options_(std::move(options)),
       announcer_(options_.rig, options_.sweep.axis_measured, std::move(outputs)),
       stepper_(options_.stepper, &interruption_.stop_signal()),
-      driver_(stepper_, options_.sweep, options_.poll_interval_s, announcer_, interruption_) {
+      driver_(stepper_, options_.sweep, options_.poll_interval_s, announcer_, interruption_,
+              heartbeat_) {
   health_.doing = "not started";
 }
 
@@ -38,6 +39,7 @@ void Sequencer::stop() {
 void Sequencer::run() {
   double retry_s = options_.shortest_retry_s;
   while (!interruption_.stopping()) {
+    heartbeat_.beat();
     Outcome fine = make_ready();
     if (fine) {
       retry_s = options_.shortest_retry_s;
@@ -55,6 +57,7 @@ Outcome Sequencer::make_ready() {
   Outcome connected = stepper_.connect();
   if (!connected) return connected;
   note_controller();
+  heartbeat_.beat();
   doing("homing", false);
   announcer_.phase(msg::PHASE_HOMING);
   return stepper_.home();
@@ -64,6 +67,7 @@ Outcome Sequencer::serve() {
   doing("waiting for a request", true);
   announcer_.phase(msg::PHASE_IDLE);
   while (!interruption_.stopping()) {
+    heartbeat_.beat();
     const std::optional<msg::SweepRequest> request = await_request();
     Outcome fine = request ? answer(*request) : check_standing();
     if (!fine) return fine;

@@ -12,6 +12,7 @@
 // Speed is always that of the mode, also where stop_and_go does not turn at it.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -20,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "components/common/heartbeat.hpp"
 #include "components/stepper_sequencer/announcer.hpp"
 #include "components/stepper_sequencer/interruption.hpp"
 #include "components/stepper_sequencer/sweep_driver.hpp"
@@ -34,6 +36,8 @@ struct SequencerOptions {
   double watch_interval_s = 0.5;  // while it stands
   double shortest_retry_s = 0.5;  // after a fault; doubles
   double longest_retry_s = 10.0;
+  // More than the thread that moves the motor is ever silent: homing takes a minute at most.
+  std::chrono::milliseconds longest_silence{90000};
 };
 
 struct SequencerHealth {
@@ -67,6 +71,8 @@ class Sequencer {
   void request(const msg::SweepRequest& request);
 
   SequencerHealth health() const;
+  // False once the thread that moves the motor hangs, wherever it does.
+  bool works() const { return heartbeat_.was_within(options_.longest_silence); }
 
  private:
   void run();
@@ -90,6 +96,7 @@ class Sequencer {
 
   SequencerOptions options_;
   Interruption interruption_;
+  Heartbeat heartbeat_;
   Announcer announcer_;
   GrblStepper stepper_;
   SweepDriver driver_;

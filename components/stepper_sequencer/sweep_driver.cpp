@@ -68,12 +68,14 @@ std::int64_t opens_ns(const SweepPlan& plan, const StepperStatus& status) {
 }  // namespace
 
 SweepDriver::SweepDriver(GrblStepper& stepper, const SweepOptions& options, double poll_interval_s,
-                         Announcer& announcer, const Interruption& interruption)
+                         Announcer& announcer, const Interruption& interruption,
+                         Heartbeat& heartbeat)
     : stepper_(stepper),
       options_(options),
       poll_interval_ns_(after(0, poll_interval_s)),
       announcer_(announcer),
-      interruption_(interruption) {}
+      interruption_(interruption),
+      heartbeat_(heartbeat) {}
 
 Outcome SweepDriver::check(const SweepPlan& plan) const {
   const bool turns_through = plan.sequence != msg::SEQUENCE_STOP_AND_GO;
@@ -194,7 +196,8 @@ Outcome SweepDriver::arrive(const Turn& turn, double speed_deg_s) {
     if (idle && is_there(*status, turn.end_angle_deg)) return Done{};
     if (idle && status->asked_ns > turn.accepted_ns + kStartGraceNs)
       return Failure{"the turn ended early: " + what_it_does(*status)};
-    if (now_ns() > overdue_ns) return Failure{"the turn does not end: " + what_it_does(*status)};
+    if (status->asked_ns > overdue_ns)  // not now_ns(): the computer may have stalled since
+      return Failure{"the turn does not end: " + what_it_does(*status)};
     Outcome paused = pause_until(now_ns() + kArrivalPollNs);
     if (!paused) return paused;
   }
@@ -208,6 +211,7 @@ bool SweepDriver::is_there(const StepperStatus& status, double angle_deg) const 
 }
 
 Result<StepperStatus> SweepDriver::look() {
+  heartbeat_.beat();
   Result<StepperStatus> status = stepper_.status();
   if (!status) return status;
   if (status->state != GrblState::kIdle && status->state != GrblState::kJog)

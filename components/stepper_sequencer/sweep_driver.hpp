@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "components/common/heartbeat.hpp"
 #include "components/stepper_sequencer/announcer.hpp"
 #include "components/stepper_sequencer/interruption.hpp"
 #include "components/stepper_sequencer/sweep_plan.hpp"
@@ -17,7 +18,7 @@ namespace swivel {
 class SweepDriver {
  public:
   SweepDriver(GrblStepper& stepper, const SweepOptions& options, double poll_interval_s,
-              Announcer& announcer, const Interruption& interruption);
+              Announcer& announcer, const Interruption& interruption, Heartbeat& heartbeat);
 
   // Whether the controller allows all turns of the plan.
   Outcome check(const SweepPlan& plan) const;
@@ -43,6 +44,7 @@ class SweepDriver {
   std::int64_t poll_interval_ns_;
   Announcer& announcer_;
   const Interruption& interruption_;
+  Heartbeat& heartbeat_;
   double angle_deg_ = 0.0;  // at the last look
 };
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "components/common/json_text.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/common/strict_yaml.hpp"
@@ -90,7 +91,7 @@ void print_json(const std::vector<Diagnosis>& diagnoses) {
                     {"words", diagnosis.words},
                     {"advice", diagnosis.advice}});
   }
-  std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  std::cout << json_text(json, 2) << '\n';
 }
 
 int doctor(const CommonOptions& common, const DoctorOptions& options) {

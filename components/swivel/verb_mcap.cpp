@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "components/common/json_text.hpp"
 #include "components/common/program.hpp"
 #include "components/mcap/whole_file.hpp"
 #include "components/swivel/recorder/copy_recording.hpp"
@@ -38,7 +39,7 @@ Overview overview_of(const std::string& path) {
 int info(const McapOptions& options) {
   const Overview overview = overview_of(options.path);
   if (options.json) {
-    std::cout << overview_json(overview).dump(2) << '\n';
+    std::cout << json_text(overview_json(overview), 2) << '\n';
   } else {
     std::cout << overview_in_words(overview);
   }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "components/common/health_json.hpp"
+#include "components/common/json_text.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/common/roll.hpp"
@@ -23,7 +24,7 @@ struct StatusOptions {
 };
 
 double seconds_since(std::int64_t time_ns) {
-  return static_cast<double>(now_ns() - time_ns) * 1e-9;
+  return (static_cast<double>(now_ns()) - static_cast<double>(time_ns)) * 1e-9;
 }
 
 std::string rates_in_words(const RollEntry& entry) {
@@ -57,7 +58,7 @@ void print(const std::string& name, const RollEntry& entry) {
 void print_json(const std::map<std::string, RollEntry>& entries) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& [name, entry] : entries) json[name] = to_json(entry);
-  std::cout << json.dump(2) << '\n';
+  std::cout << json_text(json, 2) << '\n';
 }
 
 int status(const CommonOptions& common, const StatusOptions& options, StopSignal& stop) {

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 
+#include "components/common/json_text.hpp"
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
 #include "components/mcap/reader.hpp"
@@ -111,7 +112,7 @@ int statistics(const TopicVerbOptions& options, StopSignal& stop, InWords in_wor
     else
       std::cout << fmt::format("{:<28} {}\n", name, (topic.*in_words)());
   }
-  if (options.json) std::cout << json.dump(2) << '\n';
+  if (options.json) std::cout << json_text(json, 2) << '\n';
   return code;
 }
 
@@ -125,9 +126,7 @@ int echo(const TopicVerbOptions& options, StopSignal& stop) {
         const nlohmann::ordered_json json{{"topic", heard.topic},
                                           {"time_ns", heard.time_ns},
                                           {"message", message ? *message : nullptr}};
-        // Words may be in any encoding.
-        constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
-        std::cout << json.dump(options.json ? -1 : 2, ' ', false, kReplace) << '\n';
+        std::cout << json_text(json, options.json ? -1 : 2) << '\n';
       });
   if (unreadable == 0) return code;
   throw ExitError(kExitBadData, std::to_string(unreadable) + " messages could not be decoded");

@@ -33,7 +33,7 @@ ScipServer::ScipServer(const ScipServerOptions& options, ScipSensor& sensor,
 
 void ScipServer::listen() {
   LoopbackListener listener = listen_on_loopback(port_);
-  port_ = listener.port;
+  if (port_ == 0) port_ = listener.port;  // once: others may ask for it from then on
   listener_ = std::move(listener.descriptor);
 }
 

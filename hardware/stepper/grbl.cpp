@@ -112,10 +112,12 @@ std::optional<GrblMessage> parse_status(std::string_view inside) {
   return status;
 }
 
+// GRBL's settings end at $132. Who listens keeps them by their number: more would be without end.
 std::optional<GrblMessage> parse_setting(std::string_view text) {
+  constexpr int kHighestSetting = 255;
   const std::optional<int> number = parse_code(take_until(text, '='));
   const std::optional<double> value = parse_finite(take_until(text, ' '));
-  if (!number || !value) return std::nullopt;
+  if (!number || *number > kHighestSetting || !value) return std::nullopt;
   return GrblSetting{*number, *value};
 }
 

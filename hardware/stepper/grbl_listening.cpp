@@ -24,8 +24,16 @@ void GrblStepper::forget_connection() {
 Outcome GrblStepper::write(std::string_view bytes) {
   if (!stream_) return Failure{options_.address + ": not connected"};
   Outcome written = stream_->write_all(bytes, kWriteTimeout);
-  if (!written) pause_listening(kHangUpTimeout, nullptr);  // hears whether the other side is gone
+  if (written) return written;
+  homed_ = false;
+  pause_listening(kHangUpTimeout, nullptr);  // hears whether the other side is gone, or hangs
   return written;
+}
+
+void GrblStepper::lose(const std::string& reason) {
+  lost_reason_ = reason;
+  stream_.reset();
+  homed_ = false;
 }
 
 GrblStepper::Heard GrblStepper::listen(Milliseconds timeout, const std::function<bool()>& heard,
@@ -38,9 +46,7 @@ GrblStepper::Heard GrblStepper::listen(Milliseconds timeout, const std::function
     const Received received = stream_->read_some(left, stop);
     if (received.kind == Received::Kind::kInterrupted) return Heard::kInterrupted;
     if (received.kind == Received::Kind::kClosed || received.kind == Received::Kind::kError) {
-      lost_reason_ = received.reason;
-      stream_.reset();
-      homed_ = false;
+      lose(received.reason);
       return Heard::kLost;
     }
     for (const GrblMessage& message : parser_.push(received.bytes)) take(message);

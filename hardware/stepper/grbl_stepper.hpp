@@ -93,6 +93,7 @@ class GrblStepper {
   Outcome find_home();
   Outcome run_down();
   void forget_connection();
+  void lose(const std::string& reason);
   Failure unheard(Heard heard, const std::string& waited_for);
   std::string why_no_banner() const;
   std::optional<std::string> trouble() const;

@@ -1,5 +1,5 @@
 # Makes the Debian packages of what is built, unpacks them into a folder, and looks at them there as
-# a user's system would: programs start and find their libraries and configuration, systemd
+# a user's system would: programs are hardened, start and find their libraries and configuration, systemd
 # takes the units, and the examples build against the packages alone.
 #   cmake -DBUILD_DIR=... -DEXAMPLES=... -DSCRATCH=... -P package_test.cmake
 function(must)
@@ -15,6 +15,8 @@ function(must_match text pattern what)
     message(FATAL_ERROR "${what}: no '${pattern}' in\n${text}")
   endif()
 endfunction()
+
+include(${CMAKE_CURRENT_LIST_DIR}/hardening.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
 set(root ${SCRATCH}/root)
@@ -35,6 +37,9 @@ foreach(package IN LISTS packages)
 endforeach()
 
 file(GLOB programs ${root}/usr/bin/*)
+foreach(program IN LISTS programs)
+  must_be_hardened(${program})
+endforeach()
 list(FILTER programs EXCLUDE REGEX "/motor_guard$")  # the sequencer's own
 foreach(program IN LISTS programs)
   must(${program} --version)
@@ -54,6 +59,10 @@ if(NOT count EQUAL 8)
   message(FATAL_ERROR "not six participants and two roles but: ${units}")
 endif()
 must(systemd-analyze verify --root=${root} --man=no --recursive-errors=no ${units})
+list(FILTER units INCLUDE REGEX "\\.service$")
+foreach(unit IN LISTS units)
+  must_be_confined(${root}/usr/lib/systemd/system/${unit})
+endforeach()
 
 file(MAKE_DIRECTORY ${root}/etc)
 must(systemd-sysusers --root=${root} ${root}/usr/lib/sysusers.d/swivel.conf)

@@ -1,6 +1,7 @@
 #include "components/swivel/live/live_sweeps.hpp"
 
 #include <fmt/core.h>
+#include <spdlog/spdlog.h>
 
 #include "components/common/cloud_message.hpp"
 #include "components/common/phase_word.hpp"
@@ -8,11 +9,15 @@
 namespace swivel {
 namespace {
 
+// Of sweeps that are not whole yet. Others' sweeps and clouds come by as well, of 11 MB and more.
+constexpr std::size_t kMostWaiting = 8;
+
 std::string in_words(const msg::Sweep& sweep) {
   if (sweep.phase() != msg::PHASE_CRUISING) return phase_word(sweep.phase());
   if (sweep.window_lines() == 1)
     return fmt::format("line {} of {}", sweep.window_first_line() + 1, sweep.lines_expected());
-  const auto window_ns = static_cast<double>(sweep.window_end_ns() - sweep.window_start_ns());
+  const double window_ns =
+      static_cast<double>(sweep.window_end_ns()) - static_cast<double>(sweep.window_start_ns());
   return fmt::format("scanning, {:.1f} s", window_ns * 1e-9);
 }
 
@@ -26,7 +31,7 @@ LiveSweeps::LiveSweeps(Participant& participant)
   participant.subscribe<msg::Sweep>(kSweepTopic, [this](const auto& sweep) { take(sweep); });
   participant.subscribe<msg::Attitude>(kAttitudeTopic, [this](const msg::Attitude& attitude) {
     const std::lock_guard lock(mutex_);
-    Parts& parts = parts_[attitude.first_beam_time_ns()];
+    Parts& parts = parts_at(attitude.first_beam_time_ns());
     parts.sweep.attitude = attitude;
     parts.attitude = true;
     hand_out_if_whole(attitude.first_beam_time_ns());
@@ -86,7 +91,7 @@ void LiveSweeps::take_assembled(const msg::Sweep& sweep) {
     nothing.attitude.verdict(msg::VERDICT_LINES_MISSING);
     return tell({std::move(nothing), {}, {}});
   }
-  Parts& parts = parts_[sweep.first_beam_time_ns()];
+  Parts& parts = parts_at(sweep.first_beam_time_ns());
   parts.sweep.sweep = sweep;
   parts.assembled = true;
   hand_out_if_whole(sweep.first_beam_time_ns());
@@ -94,13 +99,21 @@ void LiveSweeps::take_assembled(const msg::Sweep& sweep) {
 
 void LiveSweeps::take_cloud(const PointCloud2& message, OrganisedCloud ProcessedSweep::*cloud) {
   const std::lock_guard lock(mutex_);
-  ProcessedSweep& sweep = parts_[stamp_ns(message)].sweep;
-  if (!from_message(message, sweep.*cloud).empty()) (sweep.*cloud) = {};
+  OrganisedCloud taken;
+  const std::string wrong = from_message(message, taken);
+  if (!wrong.empty()) return spdlog::warn("a cloud was refused: {}", wrong);
+  parts_at(stamp_ns(message)).sweep.*cloud = std::move(taken);
   hand_out_if_whole(stamp_ns(message));
 }
 
+LiveSweeps::Parts& LiveSweeps::parts_at(std::int64_t stamp_ns) {
+  const bool full = parts_.size() >= kMostWaiting && parts_.count(stamp_ns) == 0;
+  if (full) parts_.erase(parts_.begin());
+  return parts_[stamp_ns];
+}
+
 void LiveSweeps::hand_out_if_whole(std::int64_t stamp_ns) {
-  Parts& parts = parts_[stamp_ns];
+  Parts& parts = parts_at(stamp_ns);
   const bool whole = parts.assembled && parts.attitude && !parts.sweep.raw.points.empty() &&
                      !parts.sweep.cloud.points.empty();
   if (!whole) return;

@@ -44,14 +44,15 @@ class LiveSweeps {
   void take(const msg::Sweep& sweep);
   void take_cloud(const PointCloud2& message, OrganisedCloud ProcessedSweep::*cloud);
   void take_assembled(const msg::Sweep& sweep);
-  void hand_out_if_whole(std::int64_t stamp_ns);
-  void tell(News news);
-
   struct Parts {
     ProcessedSweep sweep;
     bool assembled = false;
     bool attitude = false;
   };
+
+  Parts& parts_at(std::int64_t stamp_ns);
+  void hand_out_if_whole(std::int64_t stamp_ns);
+  void tell(News news);
 
   Writer<msg::SweepRequest> requests_;
   std::mutex mutex_;  // of what follows

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "components/attitude_corrector/corrector.hpp"
+#include "components/common/json_text.hpp"
 #include "components/common/program.hpp"
 #include "components/swivel/offline/cloud_files.hpp"
 #include "components/swivel/offline/sweep_report.hpp"
@@ -54,7 +55,7 @@ void OutputFolder::add(const ProcessedSweep& processed, const nlohmann::ordered_
 
 void OutputFolder::finish() const {
   write_text_file(folder_ + "/attitude.csv", attitude_csv_);
-  write_text_file(folder_ + "/report.json", report_.dump(2) + "\n");
+  write_text_file(folder_ + "/report.json", json_text(report_, 2) + "\n");
   name_last("cloud", ".pcd");
   name_last("cloud", ".ply");
   name_last("top_view", ".png");

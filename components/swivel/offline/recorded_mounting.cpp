@@ -11,6 +11,7 @@
 #include "components/alpha_calibrator/mounting_calibration.hpp"
 #include "components/cloud_assembler/assembler.hpp"
 #include "components/common/calibration_file.hpp"
+#include "components/common/json_text.hpp"
 #include "components/common/program.hpp"
 #include "components/swivel/offline/mounting_json.hpp"
 #include "components/swivel/offline/mounting_pictures.hpp"
@@ -111,7 +112,7 @@ class MountingOutput {
   }
   void warn(const std::string& words) { report_["warning"] = words; }
   void finish() const {
-    write_text_file(options_.folder + "/mounting.json", report_.dump(2) + "\n");
+    write_text_file(options_.folder + "/mounting.json", json_text(report_, 2) + "\n");
   }
 
   void save(const msg::Calibration& found, const std::string& name) const {

@@ -70,6 +70,15 @@ void Recorder::run() {
     if (done) break;
   }
   if (const Outcome closed = files_.close(); !closed) fail(closed.reason());
+  count_not_safe();
+}
+
+// What a failure left between memory and disk was counted as come, but is in no file.
+void Recorder::count_not_safe() {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [topic, count] : files_.not_safe()) {
+    counts_[topic->full_name(rig_)].dropped += count;
+  }
 }
 
 Outcome Recorder::work(std::optional<RecordedSample> sample) {

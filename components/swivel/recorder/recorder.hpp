@@ -62,6 +62,7 @@ class Recorder {
   Outcome work(std::optional<RecordedSample> sample);
   void keep(RecordedSample sample);
   Outcome write_kept();
+  void count_not_safe();
   void fail(const std::string& reason);
 
   const RecorderOptions options_;

@@ -37,9 +37,15 @@ std::optional<std::uint16_t> RecordingFiles::channel_id(const RecordedSample& re
 
 Outcome RecordingFiles::write(const RecordedSample& recorded) {
   const bool full = writer_ && writer_->size_bytes() >= limits_.split_bytes;
-  if (full) {
-    if (Outcome closed = close(); !closed) return closed;
-  }
+  Outcome closed = full ? close() : Outcome(Done{});
+  ++not_safe_[recorded.topic];
+  if (!closed) return closed;
+  Outcome appended = append(recorded);
+  if (appended && writer_->is_all_safe()) not_safe_.clear();
+  return appended;
+}
+
+Outcome RecordingFiles::append(const RecordedSample& recorded) {
   if (!writer_) {
     if (Outcome opened = open(); !opened) return opened;
   }
@@ -54,6 +60,7 @@ Outcome RecordingFiles::keep_safe() {
   if (!writer_ || now < safe_time_ + kChunkDuration) return Done{};
   safe_time_ = now;
   if (Outcome ended = writer_->end_chunk(); !ended) return ended;
+  not_safe_.clear();
   return check_room();
 }
 
@@ -70,6 +77,7 @@ Outcome RecordingFiles::check_room() const {
 Outcome RecordingFiles::close() {
   if (!writer_) return Done{};
   const Outcome closed = writer_->close();
+  if (closed) not_safe_.clear();
   writer_.reset();
   channel_ids_.clear();
   return closed;

@@ -33,8 +33,11 @@ class RecordingFiles {
   Outcome close();
 
   const std::vector<std::string>& names() const { return names_; }
+  // Messages that were given to write() and that no file is known to hold: after a failure, lost.
+  const std::map<const AnyTopic*, std::uint64_t>& not_safe() const { return not_safe_; }
 
  private:
+  Outcome append(const RecordedSample& sample);
   std::optional<std::uint16_t> channel_id(const RecordedSample& sample);
   Outcome check_room() const;
 
@@ -46,6 +49,7 @@ class RecordingFiles {
   // By topic and writer: each writer counts for itself, and so is a channel.
   std::map<std::pair<const AnyTopic*, std::string>, std::uint16_t> channel_ids_;
   std::chrono::steady_clock::time_point safe_time_;
+  std::map<const AnyTopic*, std::uint64_t> not_safe_;
 };
 
 }  // namespace swivel

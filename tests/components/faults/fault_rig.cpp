@@ -59,18 +59,20 @@ std::optional<Message> wait_for(std::mutex& mutex, const std::vector<Message>& s
 
 }  // namespace
 
-FaultRig::FaultRig(const std::vector<std::string>& participants)
+FaultRig::FaultRig(const std::vector<std::string>& participants, FaultRigOptions options)
     : rig_file_(scratch_.file("rig.yaml")),
       domain_(std::to_string(domain_of_this_test())),
-      names_(participants) {
+      names_(participants),
+      preload_(std::move(options.preload)) {
   std::ofstream(rig_file_) << fast_rig();
-  bench_ = std::make_unique<ChildProcess>(
-      "swivel-bench",
-      std::vector<std::string>{"--truth", scratch_.file("truth.csv"), "--control",
-                               scratch_.file("control"), "--stepper-link", scratch_.file("stepper"),
-                               "--alpha-deg", "30", "--home-time-s", "0.4", "--log-level",
-                               "warning"},
-      true);
+  std::vector<std::string> arguments{"--truth",        scratch_.file("truth.csv"),
+                                     "--control",      scratch_.file("control"),
+                                     "--stepper-link", scratch_.file("stepper"),
+                                     "--alpha-deg",    "30",
+                                     "--home-time-s",  "0.4",
+                                     "--log-level",    "warning"};
+  arguments.insert(arguments.end(), options.bench.begin(), options.bench.end());
+  bench_ = std::make_unique<ChildProcess>("swivel-bench", arguments, true);
   std::istringstream words(bench_->read_line(std::chrono::seconds(10)).value_or(""));
   words >> addresses_["-"] >> addresses_["--lidar"] >> addresses_["-"] >> addresses_["--stepper"];
   control_ = connect_control(scratch_.file("control"));
@@ -143,7 +145,12 @@ void FaultRig::start(const std::string& participant) {
   };
   if (participant == "hokuyo_reader") add("--lidar");
   if (participant == "stepper_sequencer") add("--stepper");
+  if (participant == "view_gateway") arguments.insert(arguments.end(), {"--port", "0"});
+  if (participant == "alpha_calibrator")
+    arguments.insert(arguments.end(), {"--calibration", scratch_.file("calibration.yaml")});
+  if (!preload_.empty()) setenv("LD_PRELOAD", preload_.c_str(), 1);
   children_[participant] = std::make_unique<ChildProcess>(participant, arguments);
+  unsetenv("LD_PRELOAD");
 }
 
 void FaultRig::signal(const std::string& participant, int number) {
@@ -251,6 +258,28 @@ void expect_a_right_sweep(FaultRig& rig) {
   EXPECT_EQ(attitude->lines_missing(), 0U);
   expect_true(rig, *attitude);
   EXPECT_TRUE(rig.await(msg::PHASE_IDLE));
+}
+
+void expect_balanced_books(FaultRig& rig) {
+  rig.mark();
+  rig.bench("lidar power-cycle 4");
+  const auto balanced = rig.await_health(
+      "cloud_assembler",
+      [&](const msg::Health& health) {
+        const auto value = [&](const char* name) { return counter_of(health, name).value_or(0); };
+        return health.time_ns() > rig.marked_ns() + 2'000'000'000 &&
+               value("lines_received") == value("lines_used") + value("lines_outside") +
+                                              value("lines_rejected") + value("lines_late") +
+                                              value("lines_waiting");
+      },
+      4.0);
+  ASSERT_TRUE(balanced);
+  EXPECT_GT(counter_of(*balanced, "lines_received"), 100U);
+  const auto read = [&](const char* name) { return rig.counter("hokuyo_reader", name); };
+  EXPECT_EQ(counter_of(*balanced, "lines_received"), read("lines_written"));
+  EXPECT_EQ(counter_of(*balanced, "samples_lost"), 0U);
+  EXPECT_EQ(read("lines_not_written"), 0U);
+  EXPECT_EQ(read("scans"), read("lines_written"));
 }
 
 bool FaultRig::go_into_a_sweep(double part) {

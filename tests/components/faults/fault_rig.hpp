@@ -27,9 +27,15 @@ struct Shaft {
   double highest_deg = 0.0;
 };
 
+// What a test may want otherwise than the others.
+struct FaultRigOptions {
+  std::vector<std::string> bench;  // arguments
+  std::string preload;             // a library that the dynamic linker puts before all others
+};
+
 class FaultRig {
  public:
-  explicit FaultRig(const std::vector<std::string>& participants);
+  explicit FaultRig(const std::vector<std::string>& participants, FaultRigOptions options = {});
   ~FaultRig();
 
   // What the bench answers, without its "ok". A command that it refuses fails the test.
@@ -38,6 +44,7 @@ class FaultRig {
 
   void start(const std::string& participant);
   void signal(const std::string& participant, int number);  // 9 waits for its end
+  pid_t process(const std::string& participant) const { return children_.at(participant)->id(); }
 
   bool ready();  // every participant has said so, in this life
   void ask(int mode = 1, int count = 1);
@@ -69,6 +76,7 @@ class FaultRig {
   std::string rig_file_;
   std::string domain_;
   std::vector<std::string> names_;
+  std::string preload_;
   std::unique_ptr<ChildProcess> bench_;
   std::map<std::string, std::string> addresses_;
   std::map<std::string, std::unique_ptr<ChildProcess>> children_;
@@ -90,6 +98,9 @@ void expect_true(FaultRig& rig, const msg::Attitude& attitude);
 
 // Asks for a sweep, and holds it against the truth: every line in, the attitude right.
 void expect_a_right_sweep(FaultRig& rig);
+
+// Silences the lidar, so that the books can be closed: what the reader wrote, the assembler has.
+void expect_balanced_books(FaultRig& rig);
 
 // Until the shaft stands: when it last moved.
 std::int64_t time_of_standstill_ns(FaultRig& rig);

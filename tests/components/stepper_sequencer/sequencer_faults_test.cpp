@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <ostream>
 #include <thread>
 
@@ -114,6 +115,43 @@ TEST(SequencerFaults, ASpeedThatTheMotorNeverReachesGivesNoWindow) {
   ASSERT_TRUE(rig.await(msg::PHASE_FAULT));
   EXPECT_TRUE(rig.sweeps(msg::PHASE_CRUISING).empty());
   EXPECT_TRUE(rig.axes().empty());
+}
+
+// For systemd's watchdog: the participant's own thread goes on whatever becomes of this one.
+TEST(SequencerFaults, AHungMotionThreadIsSeen) {
+  GrblDouble peer;
+  SequencerOptions options = test::quick_options(peer);
+  options.longest_silence = 1500ms;  // less than a busy machine may need between two words
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  Sequencer sequencer(options, {[&](const msg::Sweep& sweep) {
+                                  if (sweep.phase() == msg::PHASE_IDLE) released.wait();
+                                },
+                                [](const msg::Axis&) {}});
+  sequencer.start();
+  EXPECT_TRUE(sequencer.works());
+  const auto changes_to = [&](bool works) {
+    const auto deadline = std::chrono::steady_clock::now() + 10s;
+    while (sequencer.works() != works && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::yield();
+    return sequencer.works() == works;
+  };
+  EXPECT_TRUE(changes_to(false));
+  release.set_value();
+  EXPECT_TRUE(changes_to(true));
+}
+
+// However long it is: each look at the turning motor is a sign of life.
+TEST(SequencerFaults, ASweepLongerThanTheLongestSilenceIsNoHang) {
+  SequencerRig rig({}, [](SequencerOptions& options) { options.longest_silence = 1500ms; });
+  ASSERT_TRUE(rig.ready());
+  rig.ask(7, 4);
+  const auto deadline = std::chrono::steady_clock::now() + 30s;
+  while (rig.sequencer.health().sweeps_done < 4 && std::chrono::steady_clock::now() < deadline) {
+    ASSERT_TRUE(rig.sequencer.works());
+    std::this_thread::sleep_for(5ms);
+  }
+  EXPECT_EQ(rig.sequencer.health().sweeps_done, 4U);
 }
 
 void expect_stops_within_2_s(SequencerRig& rig) {

@@ -53,6 +53,17 @@ TEST_F(McapVerbs, InfoTellsWhatIsThereAndWhatIsMissing) {
   EXPECT_EQ(run_swivel(scratch_, "check " + path_), 65);
 }
 
+// A file of another's may bear any words.
+TEST_F(McapVerbs, InfoOfWordsThatAreNotUtf8IsJsonAllTheSame) {
+  {
+    auto writer = McapWriter::create(other_);
+    const auto channel = writer->add_channel({"rig/\xff\xfe", "\x80", {}, {}});
+    EXPECT_TRUE(writer->write({*channel, 1, kStart_ns, kStart_ns, "x"}));
+    EXPECT_TRUE(writer->close());
+  }
+  EXPECT_EQ(info(other_)["messages"], 1);
+}
+
 TEST_F(McapVerbs, WhatIsCutIsRecoveredToItsLastWholeChunk) {
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 3);
   EXPECT_EQ(run_swivel(scratch_, "check " + path_), 65);

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include "components/common/program.hpp"
 #include "components/mcap/reader.hpp"
@@ -96,6 +97,45 @@ TEST_F(RecorderTest, KeepsTheLastAndWritesThemWhenTriggered) {
   EXPECT_TRUE(record(last, 8).files.empty()) << "no trigger came";
   const RecorderSummary summary = record(last, 12, 11);
   EXPECT_EQ(numbers_in(summary.files), (std::vector<std::uint64_t>{8, 9, 10, 11, 12}));
+}
+
+// A disk of a quarter of a megabyte, where one may be mounted.
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::string path) : path_(std::move(path)) {
+    std::filesystem::create_directory(path_);
+    mounted_ = mount("swivel_test", path_.c_str(), "tmpfs", 0, "size=256k") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount(path_.c_str());
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  std::string path_;
+  bool mounted_ = false;
+};
+
+TEST_F(RecorderTest, ADiskThatFillsUpIsToldAndWhatItDoesNotHoldIsCounted) {
+  const SmallDisk disk(scratch_.file("disk"));
+  if (!disk.mounted()) GTEST_SKIP() << "no disk can be mounted here; it takes root";
+  RecorderOptions small = options();
+  small.path = scratch_.file("disk/recording.mcap");
+  small.limits.split_bytes = 100'000;  // several files fit, and then half of one
+  const RecorderSummary summary = record(small, 40);
+  EXPECT_THAT(summary.failure, HasSubstr("No space left on device"));
+  std::uint64_t held = 0;
+  for (const std::string& file : summary.files) {
+    for (const std::string& name : {file, file + ".part"}) {
+      auto reader = McapReader::open(name);
+      while (reader && reader->next()) ++held;
+    }
+  }
+  EXPECT_GT(held, 5U);
+  EXPECT_EQ(summary.total().messages, 40U);
+  EXPECT_EQ(summary.total().dropped, 40U - held);
 }
 
 TEST_F(RecorderTest, AFullDiskEndsItBeforeItBegins) {

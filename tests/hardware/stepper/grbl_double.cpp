@@ -58,7 +58,11 @@ GrblDouble::~GrblDouble() {
 
 void GrblDouble::run() {
   while (!ending_) {
-    pollfd waiting{master_, POLLIN, 0};
+    pollfd waiting{-1, POLLIN, 0};
+    {
+      const std::lock_guard lock(mutex_);
+      waiting.fd = master_;
+    }
     ::poll(&waiting, 1, 1);
     const std::lock_guard lock(mutex_);
     if (master_ < 0) continue;

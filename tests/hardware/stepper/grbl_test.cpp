@@ -57,6 +57,7 @@ TEST(Grbl, ReadsAStatusReport) {
 TEST(Grbl, ReadsTheOtherLines) {
   EXPECT_EQ(only<GrblBanner>("Grbl 1.1h ['$' for help]").version, "1.1h");
   EXPECT_EQ(only<GrblSetting>("$110=10800.000").number, 110);
+  EXPECT_FALSE(parse_grbl_line("$256=1")) << "else a hostile list of them would be without end";
   EXPECT_DOUBLE_EQ(only<GrblSetting>("$110=10800.000").value, 10800.0);
   EXPECT_EQ(only<GrblError>("error:22").code, 22);
   EXPECT_EQ(only<GrblAlarm>("ALARM:9").code, 9);
