@@ -10,13 +10,13 @@ namespace {
 // A direction is seen when the data know it so much better than the rig file does.
 constexpr double kLeastGain = 10.0;
 
-using Directions = Eigen::Matrix<double, kMountingValues, Eigen::Dynamic>;
-
 // The directions that the data show, over the prior's sigma and with unit information each; and
-// the others.
+// the others. A column each, the rest are zero.
 struct Split {
-  Directions seen;    // sigma * eigenvector / sqrt(eigenvalue)
-  Directions unseen;  // sigma * eigenvector
+  MountingMatrix seen = MountingMatrix::Zero();     // sigma * eigenvector / sqrt(eigenvalue)
+  MountingMatrix told_by = MountingMatrix::Zero();  // sqrt(eigenvalue) * eigenvector / sigma
+  MountingMatrix unseen = MountingMatrix::Zero();   // sigma * eigenvector
+  int seen_directions = 0;
 };
 
 // About their mean, which is none once the fit is at its end: before, all pull one way, and that is
@@ -35,42 +35,40 @@ Split split_by_gain(const MountingMatrix& information, const MountingMatrix& sca
                     const MountingPrior& prior) {
   const auto scale = prior.sigma.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<MountingMatrix> solver(scale * information * scale);
-  Split split{Directions(kMountingValues, 0), Directions(kMountingValues, 0)};
-  const auto append = [](Directions& to, const MountingVector& direction) {
-    to.conservativeResize(Eigen::NoChange, to.cols() + 1);
-    to.rightCols<1>() = direction;
-  };
+  const MountingVector inverse_sigma =
+      (prior.sigma.array() > 0.0).select(prior.sigma.cwiseInverse(), 0.0);
+  Split split;
   for (int index = 0; index < kMountingValues; ++index) {
-    const MountingVector direction = scale * solver.eigenvectors().col(index);
+    const MountingVector eigenvector = solver.eigenvectors().col(index);
+    const MountingVector direction = scale * eigenvector;
     const double worth = solver.eigenvalues()[index];
     const double widening = std::max(1.0, direction.dot(scatter * direction) / worth);
-    const bool seen = worth > kLeastGain * kLeastGain * widening;
-    append(seen ? split.seen : split.unseen, seen ? direction / std::sqrt(worth) : direction);
+    if (worth > kLeastGain * kLeastGain * widening) {
+      split.seen.col(index) = direction / std::sqrt(worth);
+      split.told_by.col(index) = std::sqrt(worth) * inverse_sigma.cwiseProduct(eigenvector);
+      ++split.seen_directions;
+    } else {
+      split.unseen.col(index) = direction;
+    }
   }
   return split;
 }
 
-// How much larger the errors are than independent noise makes them, in directions of unit
-// information: never less than 1.
-Eigen::MatrixXd widened(const MountingMatrix& scatter, const Directions& seen) {
-  if (seen.cols() == 0) return {};
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(seen.transpose() * scatter * seen);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(1.0).asDiagonal() *
-         solver.eigenvectors().transpose();
-}
-
-MountingSolution solution_of(const Split& split, const Eigen::MatrixXd& widening,
+// The errors are larger than independent noise makes them by the scatter's eigenvalues, in
+// directions of unit information; never smaller.
+MountingSolution solution_of(const Split& split, const MountingMatrix& scatter,
                              const MountingVector& value) {
+  const Eigen::SelfAdjointEigenSolver<MountingMatrix> solver(split.seen.transpose() * scatter *
+                                                             split.seen);
+  const MountingVector widening = solver.eigenvalues().cwiseMax(1.0);
+  const MountingMatrix seen = split.seen * solver.eigenvectors();
+  const MountingMatrix told_by = split.told_by * solver.eigenvectors();
   MountingSolution solution;
   solution.value = value;
-  solution.seen_directions = static_cast<int>(split.seen.cols());
-  const MountingMatrix unseen = split.unseen * split.unseen.transpose();
-  solution.covariance = unseen;
-  if (solution.seen_directions > 0) {
-    solution.covariance += split.seen * widening * split.seen.transpose();
-    const Eigen::MatrixXd back = split.seen.completeOrthogonalDecomposition().pseudoInverse();
-    solution.information = back.transpose() * widening.inverse() * back;
-  }
+  solution.seen_directions = split.seen_directions;
+  solution.covariance = split.unseen * split.unseen.transpose();
+  solution.covariance += seen * widening.asDiagonal() * seen.transpose();
+  solution.information = told_by * widening.cwiseInverse().asDiagonal() * told_by.transpose();
   return solution;
 }
 
@@ -109,7 +107,7 @@ MountingSolution solve(const MountingEquations& equations, const MountingVector&
   const Split split = split_by_gain(equations.information, scatter, prior);
   const MountingVector pull = equations.information * (value - prior.nominal) - equations.gradient;
   const MountingVector found = prior.nominal + split.seen * (split.seen.transpose() * pull);
-  MountingSolution solution = solution_of(split, widened(scatter, split.seen), found);
+  MountingSolution solution = solution_of(split, scatter, found);
   solution.unseen = unseen_shares(split, prior);
   return solution;
 }
@@ -123,10 +121,8 @@ MountingSolution solve_together(const std::vector<MountingSolution>& sweeps,
     pull += sweep.information * (sweep.value - prior.nominal);
   }
   const Split split = split_by_gain(information, information, prior);
-  const Eigen::Index seen = split.seen.cols();
-  MountingSolution solution =
-      solution_of(split, Eigen::MatrixXd::Identity(seen, seen),
-                  prior.nominal + split.seen * (split.seen.transpose() * pull));
+  const MountingVector value = prior.nominal + split.seen * (split.seen.transpose() * pull);
+  MountingSolution solution = solution_of(split, MountingMatrix::Zero(), value);
   solution.unseen = unseen_shares(split, prior);
   return solution;
 }
