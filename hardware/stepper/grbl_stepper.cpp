@@ -206,7 +206,8 @@ Result<StepperStatus> GrblStepper::wait_idle(Milliseconds timeout) {
 
 Outcome GrblStepper::halt() {
   if (!may_turn_) return Done{};
-  if (!stream_) return Failure{"the controller is gone: a turn under way runs to its end"};
+  if (!stream_)
+    return Failure{options_.address + ": the controller is gone: a turn under way runs to its end"};
   if (!trouble() && run_down()) return Done{};
   Outcome cut = reset(kCutTimeout, nullptr);
   if (!cut) return Failure{"the motor may turn to the end of its turn: " + cut.reason()};
