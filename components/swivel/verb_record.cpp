@@ -1,5 +1,6 @@
 // swivel record: topics into an MCAP file, byte for byte.
 #include <signal.h>
+#include <spdlog/spdlog.h>
 #include <time.h>
 #include <unistd.h>
 
