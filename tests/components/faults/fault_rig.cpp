@@ -59,11 +59,19 @@ std::optional<Message> wait_for(std::mutex& mutex, const std::vector<Message>& s
 
 }  // namespace
 
-FaultRig::FaultRig(const std::vector<std::string>& participants)
-    : rig_file_(scratch_.file("rig.yaml")),
+FaultRig::FaultRig(const std::vector<std::string>& participants, FaultRigPlace place)
+    : place_(std::move(place)),
+      rig_file_(scratch_.file("rig.yaml")),
       domain_(std::to_string(domain_of_this_test())),
       names_(participants) {
   std::ofstream(rig_file_) << fast_rig();
+  start_bench();
+  join_domain();
+  for (const std::string& name : names_) start(name);
+}
+
+void FaultRig::start_bench() {
+  place_.go_to("swivel-bench");
   bench_ = std::make_unique<ChildProcess>(
       "swivel-bench",
       std::vector<std::string>{"--truth", scratch_.file("truth.csv"), "--control",
@@ -74,8 +82,6 @@ FaultRig::FaultRig(const std::vector<std::string>& participants)
   std::istringstream words(bench_->read_line(std::chrono::seconds(10)).value_or(""));
   words >> addresses_["-"] >> addresses_["--lidar"] >> addresses_["-"] >> addresses_["--stepper"];
   control_ = connect_control(scratch_.file("control"));
-  join_domain();
-  for (const std::string& name : names_) start(name);
 }
 
 FaultRig::~FaultRig() {
@@ -85,8 +91,13 @@ FaultRig::~FaultRig() {
 }
 
 void FaultRig::join_domain() {
+  place_.go_to("fault_test");
   ParticipantOptions options = loopback_participant("fault_test", std::stoi(domain_));
   options.rig = "swivel";
+  options.network = place_.network;
+  options.discovery_server = place_.discovery_server;
+  options.peers = place_.peers;
+  options.security_folder = place_.security_folder;
   participant_ = std::make_unique<Participant>(options);
   requests_ = std::make_unique<Writer<msg::SweepRequest>>(*participant_, kSweepRequestTopic);
   requester_ = std::make_unique<SweepRequester>(
@@ -136,13 +147,18 @@ Shaft FaultRig::shaft() {
 }
 
 void FaultRig::start(const std::string& participant) {
-  std::vector<std::string> arguments{"--rig",      rig_file_, "--domain",    domain_,
-                                     "--profiles", kProfiles, "--log-level", "error"};
-  const auto add = [&](const std::string& option) {
-    arguments.insert(arguments.end(), {option, addresses_[option]});
+  place_.go_to(participant);
+  std::vector<std::string> arguments{"--rig",       rig_file_,      "--domain",   domain_,
+                                     "--network",   place_.network, "--profiles", kProfiles,
+                                     "--log-level", "error"};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
   };
-  if (participant == "hokuyo_reader") add("--lidar");
-  if (participant == "stepper_sequencer") add("--stepper");
+  add("--discovery-server", place_.discovery_server);
+  for (const std::string& peer : place_.peers) add("--peer", peer);
+  add("--security", place_.security_folder);
+  if (participant == "hokuyo_reader") add("--lidar", addresses_["--lidar"]);
+  if (participant == "stepper_sequencer") add("--stepper", addresses_["--stepper"]);
   children_[participant] = std::make_unique<ChildProcess>(participant, arguments);
 }
 
@@ -251,6 +267,16 @@ void expect_a_right_sweep(FaultRig& rig) {
   EXPECT_EQ(attitude->lines_missing(), 0U);
   expect_true(rig, *attitude);
   EXPECT_TRUE(rig.await(msg::PHASE_IDLE));
+}
+
+void expect_role_back_within_3_s(FaultRig& rig, const std::string& participant) {
+  const std::int64_t started_ns = now_ns();
+  rig.start(participant);
+  const auto back = rig.await_health(participant, [&](const msg::Health& health) {
+    return health.started_time_ns() >= started_ns && health.state() == msg::HEALTH_OK;
+  });
+  ASSERT_TRUE(back);
+  EXPECT_LT(back->time_ns() - started_ns, 3'000'000'000);
 }
 
 bool FaultRig::go_into_a_sweep(double part) {

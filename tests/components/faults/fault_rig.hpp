@@ -27,9 +27,19 @@ struct Shaft {
   double highest_deg = 0.0;
 };
 
+// Where the rig runs; by itself, on this computer alone.
+struct FaultRigPlace {
+  std::string network = "loopback";
+  std::string discovery_server;
+  std::vector<std::string> peers;
+  std::string security_folder;  // with "fault_test" in it
+  // Called before a program is started, and before the test itself joins, as "fault_test".
+  std::function<void(const std::string& program)> go_to = [](const std::string&) {};
+};
+
 class FaultRig {
  public:
-  explicit FaultRig(const std::vector<std::string>& participants);
+  explicit FaultRig(const std::vector<std::string>& participants, FaultRigPlace place = {});
   ~FaultRig();
 
   // What the bench answers, without its "ok". A command that it refuses fails the test.
@@ -63,8 +73,10 @@ class FaultRig {
   std::optional<double> true_phi_deg(const msg::Attitude& attitude) const;
 
  private:
+  void start_bench();
   void join_domain();
 
+  FaultRigPlace place_;
   ScratchFolder scratch_;
   std::string rig_file_;
   std::string domain_;
@@ -90,6 +102,9 @@ void expect_true(FaultRig& rig, const msg::Attitude& attitude);
 
 // Asks for a sweep, and holds it against the truth: every line in, the attitude right.
 void expect_a_right_sweep(FaultRig& rig);
+
+// Starts one that was killed.
+void expect_role_back_within_3_s(FaultRig& rig, const std::string& participant);
 
 // Until the shaft stands: when it last moved.
 std::int64_t time_of_standstill_ns(FaultRig& rig);
