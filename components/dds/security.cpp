@@ -1,11 +1,13 @@
 #include "components/dds/security.hpp"
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 
 namespace swivel {
 
@@ -27,6 +29,21 @@ void check_private(const std::string& path) {
   throw DdsError(path + ": everybody may read this private key; chmod 600 it");
 }
 
+// Who joins sends certificate and permissions in one message, which Fast DDS does not cut.
+constexpr std::uint32_t kLongestIntroductionBytes = 12000;
+
+// The profile's own description stays as it is: other participants of this process share it.
+void let_introductions_pass(fast::DomainParticipantQos& qos) {
+  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+  for (auto& transport : qos.transport().user_transports) {
+    const auto* const given = dynamic_cast<const UDPv4TransportDescriptor*>(transport.get());
+    if (given == nullptr || given->maxMessageSize >= kLongestIntroductionBytes) continue;
+    auto larger = std::make_shared<UDPv4TransportDescriptor>(*given);
+    larger->maxMessageSize = kLongestIntroductionBytes;
+    transport = larger;
+  }
+}
+
 }  // namespace
 
 SecurityFiles security_files(const std::string& folder, const std::string& participant) {
@@ -44,6 +61,7 @@ void set_security(const ParticipantOptions& options, fast::DomainParticipantQos&
     check_readable(path, options);
   }
   check_private(files.private_key);
+  let_introductions_pass(qos);
   auto& properties = qos.properties().properties();
   const std::string identity = "dds.sec.auth.builtin.PKI-DH.";
   const std::string access = "dds.sec.access.builtin.Access-Permissions.";
