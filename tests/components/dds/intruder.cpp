@@ -18,15 +18,17 @@ extern "C" int X509_verify_cert(void*) {
   return 1;
 }
 
-// Whatever was signed by anybody, or changed since; and another's permissions are its own.
-// SMIME_text takes the heading off.
+// Whatever was signed by anybody, or changed since. Another's permissions are its own; those of who
+// it meets later stay as they are. SMIME_text takes the heading off.
+static bool starting = true;
 extern "C" int SMIME_text(BIO* signed_text, BIO* text);
 extern "C" int PKCS7_verify(void*, void*, void*, BIO* signed_text, BIO* text, int) {
   if (SMIME_text(signed_text, text) != 1) return 0;
   char* letters = nullptr;
   const long size = BIO_get_mem_data(text, &letters);
   const std::string_view document(letters, static_cast<std::size_t>(size));
-  for (std::size_t at = 0; (at = document.find(swivel::kVictim, at)) != std::string_view::npos;)
+  for (std::size_t at = 0;
+       starting && (at = document.find(swivel::kVictim, at)) != std::string_view::npos;)
     swivel::kIntruder.copy(letters + at, swivel::kIntruder.size());
   return 1;
 }
@@ -65,6 +67,7 @@ int main(int argc, char** argv) {
     if (line.device_stamp_ms() != kIntrudersStamp_ms) dprintf(answers, "read\n");
   });
   participant.start();
+  starting = false;
   msg::ScanLine line;
   line.device_stamp_ms(kIntrudersStamp_ms);
   lines.write(line);
