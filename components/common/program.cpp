@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "components/common/strict_yaml.hpp"
+#include "components/dds/fast_dds_log.hpp"
 
 namespace swivel {
 
@@ -36,7 +37,24 @@ void StopSignal::wait() {
 
 ParticipantOptions CommonOptions::participant(const std::string& name,
                                               const std::string& rig) const {
-  return {name, rig, domain, network, profiles_file};
+  ParticipantOptions options{name, rig, domain, network, profiles_file};
+  options.discovery_server = discovery_server;
+  options.peers = peers;
+  options.security_folder = security_folder;
+  return options;
+}
+
+std::vector<std::string> CommonOptions::as_arguments() const {
+  std::vector<std::string> arguments{"--rig",       rig_file, "--domain",   std::to_string(domain),
+                                     "--network",   network,  "--profiles", profiles_file,
+                                     "--log-level", log_level};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+  };
+  add("--discovery-server", discovery_server);
+  for (const std::string& peer : peers) add("--peer", peer);
+  add("--security", security_folder);
+  return arguments;
 }
 
 std::string program_directory() {
@@ -66,6 +84,17 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
                  "loopback: this computer alone; lan: every interface; or a participant profile")
       ->envname("SWIVEL_NETWORK")
       ->capture_default_str();
+  app.add_option("--discovery-server", options.discovery_server,
+                 "A.B.C.D[:PORT] of `swivel discovery-server`, where multicast does not pass")
+      ->envname("SWIVEL_DISCOVERY_SERVER");
+  app.add_option("--peer", options.peers,
+                 "A.B.C.D of the other computer, to find each other where multicast does not pass")
+      ->envname("SWIVEL_PEER")
+      ->check(CLI::ValidIPV4)
+      ->allow_extra_args(false);
+  app.add_option("--security,--secure", options.security_folder,
+                 "The folder of `swivel keys`: encrypted, with those alone who have keys of it")
+      ->envname("SWIVEL_SECURITY");
   app.add_option("--profiles", options.profiles_file, "The DDS profiles")->capture_default_str();
   app.add_option("--log-level", options.log_level, "What to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
@@ -77,6 +106,7 @@ void start_log(const std::string& program, const std::string& level) {
       std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>()));
   spdlog::set_pattern("%H:%M:%S.%e %-7l %n: %v");
   spdlog::set_level(spdlog::level::from_str(level));
+  log_what_fast_dds_says();
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {

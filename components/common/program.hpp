@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "components/dds/participant.hpp"
 
@@ -59,10 +60,15 @@ struct CommonOptions {
   std::string rig_file;
   std::string profiles_file;
   std::string network = "loopback";
+  std::string discovery_server;
+  std::vector<std::string> peers;
+  std::string security_folder;
   std::string log_level = "info";
   int domain = 0;
 
   ParticipantOptions participant(const std::string& name, const std::string& rig) const;
+  // For another program of ours, to meet this one.
+  std::vector<std::string> as_arguments() const;
 };
 
 // share/swivel beside the directory of the running program.

@@ -218,6 +218,19 @@ std::string YamlSection::text(const std::string& key, const std::string& when_ab
   return has(key) ? text(key) : when_absent;
 }
 
+std::vector<std::string> YamlSection::texts(const std::string& key) {
+  known_.insert(key);
+  if (!has(key)) refuse_missing(key);
+  const YAML::Node& node = entries_.at(key);
+  if (!node.IsSequence()) refuse(key, "must be a list");
+  std::vector<std::string> values;
+  for (const YAML::Node& item : node) {
+    if (!item.IsScalar()) refuse(key, "must be a list of single values");
+    values.push_back(item.Scalar());
+  }
+  return values;
+}
+
 std::string YamlSection::one_of(const std::string& key, const std::vector<std::string>& words) {
   std::string word = text(key);
   if (std::find(words.begin(), words.end(), word) == words.end()) {

@@ -41,6 +41,7 @@ class YamlSection {
   bool flag(const std::string& key, bool when_absent);
   std::string text(const std::string& key);
   std::string text(const std::string& key, const std::string& when_absent);
+  std::vector<std::string> texts(const std::string& key);  // a list
   std::string one_of(const std::string& key, const std::vector<std::string>& words);
   // For mappings whose keys are data: every key, in the order of the file.
   std::vector<std::string> keys() const;

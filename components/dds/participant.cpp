@@ -30,6 +30,7 @@ namespace swivel {
 
 namespace fast = eprosima::fastdds::dds;
 using eprosima::fastrtps::rtps::GuidPrefix_t;
+using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 
 // Hears of other participants on Fast DDS's threads, where nothing else may be done, and keeps
@@ -55,6 +56,16 @@ class PeerListener : public fast::DomainParticipantListener {
     woken_.set_trigger_value(true);
   }
 
+  // Told of each attempt anew: who is refused tries again and again.
+  void onParticipantAuthentication(fast::DomainParticipant*,
+                                   ParticipantAuthenticationInfo&& info) override {
+    if (info.status != ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) return;
+    ++refusals_;
+    woken_.set_trigger_value(true);
+  }
+
+  std::uint64_t refusals() const { return refusals_; }
+
   std::deque<News> take_news() {
     const std::lock_guard lock(mutex_);
     return std::exchange(news_, {});
@@ -69,6 +80,7 @@ class PeerListener : public fast::DomainParticipantListener {
 
  private:
   fast::GuardCondition& woken_;
+  std::atomic<std::uint64_t> refusals_{0};
   mutable std::mutex mutex_;
   std::deque<News> news_;
   std::map<GuidPrefix_t, std::string> names_;
@@ -213,7 +225,11 @@ void Participant::on_problem(std::function<void(const std::string&)> callback) {
 
 void Participant::start() {
   if (participant_->enable() != ReturnCode_t::RETCODE_OK) {
-    throw DdsError("the DDS participant could not be enabled; is /dev/shm full?");
+    if (options_.security_folder.empty())
+      throw DdsError("the DDS participant could not be enabled; is /dev/shm full?");
+    throw DdsError("the DDS participant could not be enabled with the keys in " +
+                   options_.security_folder +
+                   ": are they of one 'swivel keys', have they expired?");
   }
   thread_ = std::thread([this] { run(); });
 }
@@ -232,6 +248,7 @@ void Participant::run() {
     wait_set_.wait(active, timeout);
     woken_.set_trigger_value(false);
     report_peers();
+    report_strangers();
     for (const auto& endpoint : endpoints_) {
       if (stopping_) break;
       handle(*endpoint);
@@ -313,6 +330,18 @@ void Participant::report_refusals() {
   for (const auto& [type, count] : refusals_->take_news()) {
     warn(std::to_string(count) + " samples refused: they are no " + type + ", or too large");
   }
+}
+
+// One line now and then: a stranger must not fill the log.
+void Participant::report_strangers() {
+  constexpr auto kSeldom = std::chrono::seconds(10);
+  const std::uint64_t strangers = peers_->refusals();
+  const auto now = std::chrono::steady_clock::now();
+  if (strangers == strangers_told_ || now < strangers_told_time_ + kSeldom) return;
+  strangers_told_ = strangers;
+  strangers_told_time_ = now;
+  warn("a stranger was refused, " + std::to_string(strangers) +
+       " attempts so far: no certificate of our authority, or one that has expired");
 }
 
 std::string Participant::name_of_peer(const eprosima::fastrtps::rtps::GUID_t& writer) const {

@@ -47,6 +47,14 @@ struct ParticipantOptions {
   // For what it writes to others on this computer; all of it is resident. 0: as the profile says,
   // which is enough for clouds.
   std::uint32_t shared_memory_bytes = 0;
+  // A.B.C.D[:PORT] of a discovery server, which says who is there. Empty: multicast does.
+  std::string discovery_server = {};
+  bool serves_discovery = false;  // it is that server
+  // A.B.C.D of computers that are asked directly who is there, besides multicast.
+  std::vector<std::string> peers = {};
+  // The folder that `swivel keys` made, to talk with those alone who have keys of it. Empty: in the
+  // clear, with everybody.
+  std::string security_folder = {};
 };
 
 // No participant, writer or reader could be made; what() says what to do.
@@ -81,7 +89,8 @@ class Participant {
   // Not together with a typed subscription or writer of the same type.
   void subscribe_cdr(const AnyTopic& topic, std::function<void(CdrSample&&)> callback);
   void on_tick(std::chrono::milliseconds period, std::function<void()> callback);
-  // Told, in words, of unmatched QoS, lost samples and vanished peers. They are logged anyhow.
+  // Told, in words, of unmatched QoS, lost samples, vanished peers and refused strangers. They are
+  // logged anyhow.
   void on_problem(std::function<void(const std::string&)> callback);
 
   // Makes the participant known to others; its writers and subscriptions are made before. Throws
@@ -119,6 +128,7 @@ class Participant {
   void handle_writer_status(Endpoint& endpoint);
   void report_peers();
   void report_refusals();
+  void report_strangers();
   std::chrono::milliseconds run_ticks();
 
   ParticipantOptions options_;
@@ -137,6 +147,8 @@ class Participant {
   std::function<void(const std::string&)> on_problem_;
   std::atomic<std::uint64_t> samples_lost_{0};
   std::shared_ptr<Refusals> refusals_ = std::make_shared<Refusals>();
+  std::uint64_t strangers_told_ = 0;
+  std::chrono::steady_clock::time_point strangers_told_time_;
   eprosima::fastdds::dds::WaitSet wait_set_;
   eprosima::fastdds::dds::GuardCondition woken_;
   std::atomic<bool> stopping_{false};

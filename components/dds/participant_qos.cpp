@@ -1,12 +1,16 @@
 #include "components/dds/participant_qos.hpp"
 
+#include <fastdds/rtps/attributes/ServerAttributes.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fstream>
 
+#include "components/dds/security.hpp"
 #include "components/dds/shared_memory.hpp"
 
 namespace swivel {
@@ -24,6 +28,66 @@ void set_shared_memory_size(fast::DomainParticipantQos& qos, std::uint32_t bytes
     auto smaller = std::make_shared<SharedMemTransportDescriptor>(*given);
     smaller->segment_size(bytes);
     transport = smaller;
+  }
+}
+
+constexpr std::uint16_t kDiscoveryPort = 11811;  // as Fast DDS's own server has it
+
+using eprosima::fastrtps::rtps::Locator_t;
+
+// Without a port: those of DDS.
+Locator_t locator_of(const std::string& address) {
+  Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  if (!eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address))
+    throw DdsError("'" + address + "' is no address of a computer: A.B.C.D");
+  return locator;
+}
+
+Locator_t locator_of_server(const std::string& address) {
+  const std::size_t colon = address.find(':');
+  Locator_t locator = locator_of(address.substr(0, colon));
+  int port = kDiscoveryPort;
+  if (colon != std::string::npos) {
+    const char* const end = address.data() + address.size();
+    const auto [stop, error] = std::from_chars(address.data() + colon + 1, end, port);
+    if (error != std::errc() || stop != end || port < 1 || port > 65535)
+      throw DdsError("'" + address + "' is no address of a discovery server: A.B.C.D[:PORT]");
+  }
+  eprosima::fastrtps::rtps::IPLocator::setPhysicalPort(locator, static_cast<std::uint16_t>(port));
+  return locator;
+}
+
+// On this computer too, where it may be multicast alone that brings participants together.
+void set_peers(const ParticipantOptions& options, fast::DomainParticipantQos& qos) {
+  if (options.peers.empty()) return;
+  auto& peers = qos.wire_protocol().builtin.initialPeersList;
+  for (const char* address : {"239.255.0.1", "127.0.0.1"}) peers.push_back(locator_of(address));
+  for (const std::string& address : options.peers) peers.push_back(locator_of(address));
+}
+
+// One server has the name that all know.
+void set_discovery(const ParticipantOptions& options, fast::DomainParticipantQos& qos) {
+  using eprosima::fastrtps::rtps::DiscoveryProtocol;
+  if (options.discovery_server.empty()) return;
+  // Fast DDS 2.9 derives the name of who has keys from them: the server's is not the known one
+  // then.
+  if (!options.security_folder.empty())
+    throw DdsError(
+        "--discovery-server does not go with --security; name the other computer: --peer");
+  auto& builtin = qos.wire_protocol().builtin;
+  eprosima::fastdds::rtps::RemoteServerAttributes server;
+  server.ReadguidPrefix(eprosima::fastdds::rtps::DEFAULT_ROS2_SERVER_GUIDPREFIX);
+  server.metatrafficUnicastLocatorList.push_back(locator_of_server(options.discovery_server));
+  builtin.initialPeersList.clear();
+  builtin.metatrafficMulticastLocatorList.clear();
+  if (options.serves_discovery) {
+    builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::SERVER;
+    builtin.metatrafficUnicastLocatorList = server.metatrafficUnicastLocatorList;
+    qos.wire_protocol().prefix = server.guidPrefix;
+  } else {
+    builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::CLIENT;
+    builtin.discovery_config.m_DiscoveryServers.push_back(server);
   }
 }
 
@@ -72,6 +136,9 @@ fast::DomainParticipantQos participant_qos(const ParticipantOptions& options) {
     }
   }
   qos.name((options.rig + "/" + options.name).c_str());
+  set_peers(options, qos);
+  set_discovery(options, qos);
+  set_security(options, qos);
   if (options.shared_memory_bytes > 0) set_shared_memory_size(qos, options.shared_memory_bytes);
   return qos;
 }

@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
   add_report(app, stop, verb);
   add_view(app, verb);
   add_doctor(app, verb);
+  add_discovery_server(app, stop, verb);
+  add_keys(app, verb);
   add_demo(app, stop, verb);
   return run_program(app, argc, argv, [&] {
     if (!verb) throw ExitError(kExitUsage, "say what to do; the verbs:\n" + app.help());

@@ -66,17 +66,8 @@ class DemoRecorder {
  public:
   DemoRecorder(const CommonOptions& common, const std::string& path) {
     if (path.empty()) return;
-    const std::vector<std::string> arguments{"record",
-                                             "-o",
-                                             path,
-                                             "--rig",
-                                             common.rig_file,
-                                             "--domain",
-                                             std::to_string(common.domain),
-                                             "--network",
-                                             common.network,
-                                             "--profiles",
-                                             common.profiles_file};
+    std::vector<std::string> arguments = common.as_arguments();
+    arguments.insert(arguments.begin(), {"record", "-o", path});
     process_ = std::make_unique<ChildProcess>("swivel", arguments);
   }
 

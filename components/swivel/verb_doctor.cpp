@@ -1,4 +1,6 @@
 // swivel doctor: what would keep a scan from working on this computer, and what to do about it.
+#include <spdlog/spdlog.h>
+
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
@@ -66,7 +68,7 @@ std::vector<Diagnosis> examine(const CommonOptions& common, const DoctorOptions&
   std::vector<Diagnosis> diagnoses;
   check_rig(common, options, diagnoses);
   diagnoses.push_back(check_udp_buffer());
-  diagnoses.push_back(check_multicast(common.network));
+  if (common.discovery_server.empty()) diagnoses.push_back(check_multicast(common.network));
   diagnoses.push_back(check_shared_memory(kSharedMemoryFolder));
   diagnoses.push_back(check_stale_segments(kSharedMemoryFolder));
   diagnoses.push_back(check_other_users(kSharedMemoryFolder));

@@ -1,6 +1,8 @@
 // swivel ls, hz, bw, delay, echo: of live topics and of recordings alike.
 #include <unistd.h>
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>

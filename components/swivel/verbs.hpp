@@ -25,6 +25,8 @@ void add_map(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_report(CLI::App& app, StopSignal& stop, Verb& chosen);
 void add_view(CLI::App& app, Verb& chosen);
 void add_doctor(CLI::App& app, Verb& chosen);
+void add_discovery_server(CLI::App& app, StopSignal& stop, Verb& chosen);
+void add_keys(CLI::App& app, Verb& chosen);
 void add_demo(CLI::App& app, StopSignal& stop, Verb& chosen);
 
 }  // namespace swivel

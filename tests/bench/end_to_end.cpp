@@ -128,13 +128,14 @@ class Sweeper {
 
 }  // namespace
 
-EndToEnd measure_end_to_end(int sweeps) {
+EndToEnd measure_end_to_end(int sweeps, const std::string& security_folder) {
   CommonOptions common;
   common.rig_file = shared_file("rigs/yuan.yaml");
   common.profiles_file = shared_file("dds_profiles.xml");
   common.domain = kDomain;
-  const std::vector<std::string> arguments{"--domain", std::to_string(kDomain), "--log-level",
-                                           "error"};
+  common.log_level = "error";
+  common.security_folder = security_folder;
+  const std::vector<std::string> arguments = common.as_arguments();
   ChildProcess assembler("cloud_assembler", arguments);
   ChildProcess corrector("attitude_corrector", arguments);
   Participant participant(common.participant("benchmark", "swivel"));

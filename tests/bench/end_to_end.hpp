@@ -14,6 +14,7 @@ struct EndToEnd {
   std::map<std::string, double> peak_memory_mb;  // by process
 };
 
-EndToEnd measure_end_to_end(int sweeps);
+// With keys, encrypted; the participant that publishes is "benchmark".
+EndToEnd measure_end_to_end(int sweeps, const std::string& security_folder = {});
 
 }  // namespace swivel

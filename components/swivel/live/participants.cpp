@@ -11,10 +11,7 @@ constexpr auto kPatience = std::chrono::milliseconds(2500);  // they promise 2 s
 
 std::vector<std::string> arguments_of(const std::string& name, const CommonOptions& common,
                                       const ParticipantsOptions& options) {
-  std::vector<std::string> arguments{
-      "--rig",       common.rig_file, "--domain",   std::to_string(common.domain),
-      "--network",   common.network,  "--profiles", common.profiles_file,
-      "--log-level", common.log_level};
+  std::vector<std::string> arguments = common.as_arguments();
   const auto add = [&](const std::string& option, const std::string& value) {
     if (!value.empty()) arguments.insert(arguments.end(), {option, value});
   };

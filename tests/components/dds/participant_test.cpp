@@ -8,7 +8,6 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fstream>
-#include <mutex>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -23,24 +22,6 @@ namespace {
 namespace fast = eprosima::fastdds::dds;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-// What a callback on the participant's thread saw, read from the test's.
-template <class Value>
-class Seen {
- public:
-  void add(Value value) {
-    const std::lock_guard lock(mutex_);
-    values_.push_back(std::move(value));
-  }
-  std::vector<Value> values() const {
-    const std::lock_guard lock(mutex_);
-    return values_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::vector<Value> values_;
-};
 
 // A process that sends clouds; ends with the object.
 class CloudSender {
@@ -151,7 +132,7 @@ TEST(Participant, CountsAHoleInTheSequenceAsALoss) {
   Seen<std::uint64_t> numbers;
   Seen<std::string> problems;
   receiver.on_problem([&](const std::string& problem) { problems.add(problem); });
-  // The reader is held in its callback until the writer's history of 500 has run over.
+  // The reader is held in its callback until the writer's history of 750 has run over.
   std::atomic<bool> hold{true};
   receiver.subscribe<msg::Axis>(kAxisTopic, [&](const auto& message) {
     numbers.add(message.sequence_number());

@@ -6,7 +6,11 @@
 
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "components/dds/participant.hpp"
 
@@ -24,6 +28,13 @@ inline ParticipantOptions loopback_participant(const std::string& name, int doma
   return {name, "test_rig", domain, "loopback", profiles};
 }
 
+// Of security_test: names of one length.
+inline constexpr std::string_view kIntruder = "intruder";
+inline constexpr std::string_view kVictim = "thelidar";
+
+// What tells an intruder's scan line from those of the test's lidar.
+inline constexpr std::uint32_t kIntrudersStamp_ms = 666666;
+
 // As large as a sweep of mode 7. Its bytes follow from its number.
 inline PointCloud2 numbered_cloud(int number) {
   PointCloud2 cloud;
@@ -40,6 +51,24 @@ inline PointCloud2 numbered_cloud(int number) {
   cloud.header().stamp().sec(number);
   return cloud;
 }
+
+// What a callback on the participant's thread saw, read from the test's.
+template <class Value>
+class Seen {
+ public:
+  void add(Value value) {
+    const std::lock_guard lock(mutex_);
+    values_.push_back(std::move(value));
+  }
+  std::vector<Value> values() const {
+    const std::lock_guard lock(mutex_);
+    return values_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Value> values_;
+};
 
 // Until the condition holds; false when the time is over.
 inline bool wait_until(const std::function<bool()>& condition,

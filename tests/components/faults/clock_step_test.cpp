@@ -19,7 +19,7 @@ class ClockStep : public ::testing::Test {
     rig_ = std::make_unique<FaultRig>(
         std::vector<std::string>{"stepper_sequencer", "hokuyo_reader", "cloud_assembler",
                                  "attitude_corrector"},
-        FaultRigOptions{{}, STEPPED_CLOCK});
+        FaultRigOptions{{}, {}, STEPPED_CLOCK});
   }
   ~ClockStep() override { unsetenv("SWIVEL_STEPPED_CLOCK"); }
 

@@ -60,24 +60,30 @@ std::optional<Message> wait_for(std::mutex& mutex, const std::vector<Message>& s
 }  // namespace
 
 FaultRig::FaultRig(const std::vector<std::string>& participants, FaultRigOptions options)
-    : rig_file_(scratch_.file("rig.yaml")),
+    : place_(std::move(options.place)),
+      rig_file_(scratch_.file("rig.yaml")),
       domain_(std::to_string(domain_of_this_test())),
       names_(participants),
       preload_(std::move(options.preload)) {
   std::ofstream(rig_file_) << fast_rig();
+  start_bench(options.bench);
+  join_domain();
+  for (const std::string& name : names_) start(name);
+}
+
+void FaultRig::start_bench(const std::vector<std::string>& more) {
+  place_.go_to("swivel-bench");
   std::vector<std::string> arguments{"--truth",        scratch_.file("truth.csv"),
                                      "--control",      scratch_.file("control"),
                                      "--stepper-link", scratch_.file("stepper"),
                                      "--alpha-deg",    "30",
                                      "--home-time-s",  "0.4",
                                      "--log-level",    "warning"};
-  arguments.insert(arguments.end(), options.bench.begin(), options.bench.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
   bench_ = std::make_unique<ChildProcess>("swivel-bench", arguments, true);
   std::istringstream words(bench_->read_line(std::chrono::seconds(10)).value_or(""));
   words >> addresses_["-"] >> addresses_["--lidar"] >> addresses_["-"] >> addresses_["--stepper"];
   control_ = connect_control(scratch_.file("control"));
-  join_domain();
-  for (const std::string& name : names_) start(name);
 }
 
 FaultRig::~FaultRig() {
@@ -87,8 +93,13 @@ FaultRig::~FaultRig() {
 }
 
 void FaultRig::join_domain() {
+  place_.go_to("fault_test");
   ParticipantOptions options = loopback_participant("fault_test", std::stoi(domain_));
   options.rig = "swivel";
+  options.network = place_.network;
+  options.discovery_server = place_.discovery_server;
+  options.peers = place_.peers;
+  options.security_folder = place_.security_folder;
   participant_ = std::make_unique<Participant>(options);
   requests_ = std::make_unique<Writer<msg::SweepRequest>>(*participant_, kSweepRequestTopic);
   requester_ = std::make_unique<SweepRequester>(
@@ -138,16 +149,20 @@ Shaft FaultRig::shaft() {
 }
 
 void FaultRig::start(const std::string& participant) {
-  std::vector<std::string> arguments{"--rig",      rig_file_, "--domain",    domain_,
-                                     "--profiles", kProfiles, "--log-level", "error"};
-  const auto add = [&](const std::string& option) {
-    arguments.insert(arguments.end(), {option, addresses_[option]});
+  place_.go_to(participant);
+  std::vector<std::string> arguments{"--rig",       rig_file_,      "--domain",   domain_,
+                                     "--network",   place_.network, "--profiles", kProfiles,
+                                     "--log-level", "error"};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
   };
-  if (participant == "hokuyo_reader") add("--lidar");
-  if (participant == "stepper_sequencer") add("--stepper");
-  if (participant == "view_gateway") arguments.insert(arguments.end(), {"--port", "0"});
-  if (participant == "alpha_calibrator")
-    arguments.insert(arguments.end(), {"--calibration", scratch_.file("calibration.yaml")});
+  add("--discovery-server", place_.discovery_server);
+  for (const std::string& peer : place_.peers) add("--peer", peer);
+  add("--security", place_.security_folder);
+  if (participant == "hokuyo_reader") add("--lidar", addresses_["--lidar"]);
+  if (participant == "stepper_sequencer") add("--stepper", addresses_["--stepper"]);
+  if (participant == "view_gateway") add("--port", "0");
+  if (participant == "alpha_calibrator") add("--calibration", scratch_.file("calibration.yaml"));
   if (!preload_.empty()) setenv("LD_PRELOAD", preload_.c_str(), 1);
   children_[participant] = std::make_unique<ChildProcess>(participant, arguments);
   unsetenv("LD_PRELOAD");
@@ -280,6 +295,16 @@ void expect_balanced_books(FaultRig& rig) {
   EXPECT_EQ(counter_of(*balanced, "samples_lost"), 0U);
   EXPECT_EQ(read("lines_not_written"), 0U);
   EXPECT_EQ(read("scans"), read("lines_written"));
+}
+
+void expect_role_back_within_3_s(FaultRig& rig, const std::string& participant) {
+  const std::int64_t started_ns = now_ns();
+  rig.start(participant);
+  const auto back = rig.await_health(participant, [&](const msg::Health& health) {
+    return health.started_time_ns() >= started_ns && health.state() == msg::HEALTH_OK;
+  });
+  ASSERT_TRUE(back);
+  EXPECT_LT(back->time_ns() - started_ns, 3'000'000'000);
 }
 
 bool FaultRig::go_into_a_sweep(double part) {

@@ -27,8 +27,19 @@ struct Shaft {
   double highest_deg = 0.0;
 };
 
+// Where the rig runs; by itself, on this computer alone.
+struct FaultRigPlace {
+  std::string network = "loopback";
+  std::string discovery_server;
+  std::vector<std::string> peers;
+  std::string security_folder;  // with "fault_test" in it
+  // Called before a program is started, and before the test itself joins, as "fault_test".
+  std::function<void(const std::string& program)> go_to = [](const std::string&) {};
+};
+
 // What a test may want otherwise than the others.
 struct FaultRigOptions {
+  FaultRigPlace place;
   std::vector<std::string> bench;  // arguments
   std::string preload;             // a library that the dynamic linker puts before all others
 };
@@ -70,8 +81,10 @@ class FaultRig {
   std::optional<double> true_phi_deg(const msg::Attitude& attitude) const;
 
  private:
+  void start_bench(const std::vector<std::string>& more);
   void join_domain();
 
+  FaultRigPlace place_;
   ScratchFolder scratch_;
   std::string rig_file_;
   std::string domain_;
@@ -101,6 +114,9 @@ void expect_a_right_sweep(FaultRig& rig);
 
 // Silences the lidar, so that the books can be closed: what the reader wrote, the assembler has.
 void expect_balanced_books(FaultRig& rig);
+
+// Starts one that was killed.
+void expect_role_back_within_3_s(FaultRig& rig, const std::string& participant);
 
 // Until the shaft stands: when it last moved.
 std::int64_t time_of_standstill_ns(FaultRig& rig);

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
-#include "hardware/io/clock.hpp"
 #include "tests/components/faults/fault_rig.hpp"
 
 namespace swivel::test {
@@ -15,16 +14,6 @@ class Killed : public FaultSuite {
     rig().signal(participant, SIGKILL);
   }
 
-  static void expect_its_role_back_within_3_s(const std::string& participant) {
-    const std::int64_t started_ns = now_ns();
-    rig().start(participant);
-    const auto back = rig().await_health(participant, [&](const msg::Health& health) {
-      return health.started_time_ns() >= started_ns && health.state() == msg::HEALTH_OK;
-    });
-    ASSERT_TRUE(back);
-    EXPECT_LT(back->time_ns() - started_ns, 3'000'000'000);
-  }
-
   // What was under way has come to its end, or to none.
   static void let_the_sweep_end() {
     EXPECT_TRUE(rig().await(msg::PHASE_IDLE));
@@ -35,7 +24,7 @@ class Killed : public FaultSuite {
 
 TEST_F(Killed, TheReader) {
   kill_in_a_sweep("hokuyo_reader");
-  expect_its_role_back_within_3_s("hokuyo_reader");
+  expect_role_back_within_3_s(rig(), "hokuyo_reader");
   const auto sweep = rig().await(msg::PHASE_ASSEMBLED);
   ASSERT_TRUE(sweep);
   EXPECT_FALSE(sweep->complete());
@@ -44,13 +33,13 @@ TEST_F(Killed, TheReader) {
 
 TEST_F(Killed, TheAssembler) {
   kill_in_a_sweep("cloud_assembler");
-  expect_its_role_back_within_3_s("cloud_assembler");
+  expect_role_back_within_3_s(rig(), "cloud_assembler");
   let_the_sweep_end();
 }
 
 TEST_F(Killed, TheCorrector) {
   kill_in_a_sweep("attitude_corrector");
-  expect_its_role_back_within_3_s("attitude_corrector");
+  expect_role_back_within_3_s(rig(), "attitude_corrector");
   const auto sweep = rig().await(msg::PHASE_ASSEMBLED);
   ASSERT_TRUE(sweep);
   EXPECT_TRUE(rig().await_attitude(sweep->sweep_id()));
@@ -61,7 +50,7 @@ TEST_F(Killed, TheCorrector) {
 // since the shaft was stopped.
 TEST_F(Killed, TheSequencer) {
   kill_in_a_sweep("stepper_sequencer");
-  expect_its_role_back_within_3_s("stepper_sequencer");
+  expect_role_back_within_3_s(rig(), "stepper_sequencer");
   expect_a_right_sweep(rig());
 }
 

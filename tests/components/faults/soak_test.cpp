@@ -108,7 +108,7 @@ class Soak : public ::testing::Test {
 
   const std::vector<std::string> names_{"stepper_sequencer",  "hokuyo_reader",    "cloud_assembler",
                                         "attitude_corrector", "alpha_calibrator", "view_gateway"};
-  FaultRig rig_{names_, {{"--stamp-start-ms", kStampStart_ms}, {}}};
+  FaultRig rig_{names_, {{}, {"--stamp-start-ms", kStampStart_ms}, {}}};
   std::map<std::string, Growth> growth_;
   int sweeps_ = 0;
   int wraps_ = 0;
