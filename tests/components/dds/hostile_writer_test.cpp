@@ -161,6 +161,7 @@ TEST(HostileWriter, CloudsOfAMillionFieldsAreNotMadeRoomFor) {
   const std::size_t count_at = 4 + 4 + 4 + 4 + 4 + 4 + 4;
   std::string many = with(sound, count_at, std::string("\0\0\x10\0", 4));
   many.resize(count_at + 4 + (1 << 20), '\x01');
+  expect_refused(kRawCloudTopic, {sound.substr(0, 20)}, PointCloud2());  // DDS's own memory
   rusage before{};
   getrusage(RUSAGE_SELF, &before);
   expect_refused(kRawCloudTopic, {many, with(sound, count_at, kAllOnes), sound.substr(0, 20)},
