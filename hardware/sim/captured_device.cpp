@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestRequest = 1000;
 // Less than that is how computers are; to follow it would disturb who times the stream.
-constexpr std::int64_t kNegligible_ns = 50 * kMillisecond_ns;
+constexpr std::int64_t kNegligible_ns = 150 * kMillisecond_ns;
 constexpr std::int64_t kSmallStep_ns = 300 * kMillisecond_ns;  // which no client takes amiss
 
 // As it can stand in a log.
