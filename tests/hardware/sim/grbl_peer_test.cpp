@@ -358,9 +358,10 @@ TEST(GrblPeer, SurvivesAnyBytes) {
   for (int i = 0; i < 20'000; ++i) {
     const double draw = random.uniform(0.0, static_cast<double>(alphabet.size() + 2));
     const auto choice = static_cast<std::size_t>(draw);
-    said += grbl.send(choice < alphabet.size()
-                          ? std::string(1, alphabet[choice])
-                          : std::string(1, static_cast<char>(random.uniform(0.0, 255.0))));
+    said += grbl.send(
+        choice < alphabet.size()
+            ? std::string(1, alphabet[choice])
+            : std::string(1, static_cast<char>(static_cast<int>(random.uniform(0.0, 255.0)))));
     said += grbl.wait(0.003);
   }
   EXPECT_THAT(said, HasSubstr("error:"));
