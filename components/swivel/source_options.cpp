@@ -15,4 +15,15 @@ void add_source_options(CLI::App& verb, RecordedRunOptions& options, bool live_t
                   "Of a recording: a calibration.yaml [its own, else alpha as drawn]");
 }
 
+std::string asked_rig_file(const CLI::App& verb, const CommonOptions& common) {
+  return verb.count("--rig") > 0 ? common.rig_file : "";
+}
+
+RigFile begin_live(const CommonOptions& common, const RecordedRunOptions& options) {
+  start_log("swivel", common.log_level == "info" ? "warning" : common.log_level);
+  if (!options.calibration_file.empty())
+    throw ExitError(kExitUsage, "--calibration is for recordings; a live rig has its own");
+  return load_rig_file(common.rig_file);
+}
+
 }  // namespace swivel

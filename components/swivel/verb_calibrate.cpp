@@ -15,6 +15,7 @@
 #include "components/swivel/offline/offline_pipeline.hpp"
 #include "components/swivel/offline/recorded_mounting.hpp"
 #include "components/swivel/offline/text_file.hpp"
+#include "components/swivel/source_options.hpp"
 #include "components/swivel/verbs.hpp"
 #include "hardware/io/clock.hpp"
 
@@ -104,7 +105,7 @@ void add_calibrate_mounting(CLI::App& calibrate, StopSignal& stop, Verb& chosen)
   add_live_options(*verb, *live);
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
-    recorded->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    recorded->rig_file = asked_rig_file(*verb, *common);
     chosen = [=, &stop]() -> int {
       if (recorded->recording.empty()) {
         return calibrate_live(
@@ -148,7 +149,7 @@ void add_calibrate(CLI::App& app, StopSignal& stop, Verb& chosen) {
   add_common_options(*verb, *common);
   add_calibrate_mounting(*calibrate, stop, chosen);
   verb->callback([=, &stop, &chosen] {
-    options->rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    options->rig_file = asked_rig_file(*verb, *common);
     chosen = [=, &stop] {
       if (!options->recording.empty()) return calibrate_alpha(*options);
       auto request = calibration_request(msg::CALIBRATION_OF_ALPHA, options->mode, options->count);

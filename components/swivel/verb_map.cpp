@@ -63,10 +63,7 @@ void draw_what_comes(LiveSweeps& sweeps, std::size_t count, OutputFolder& output
 }
 
 int map_live(const CommonOptions& common, const MapOptions& options, StopSignal& stop) {
-  start_log("swivel", common.log_level == "info" ? "warning" : common.log_level);
-  if (!options.source.calibration_file.empty())
-    throw ExitError(kExitUsage, "--calibration is for recordings; a live rig has its own");
-  const RigFile rig = load_rig_file(common.rig_file);
+  const RigFile rig = begin_live(common, options.source);
   OutputFolder output(options.source.folder, rig.rig, rig, options.source.kinds);
   SweepPictures pictures(options.source.folder, rig.rig, rig);
   Participant participant(common.participant("swivel_map", rig.rig));
@@ -94,7 +91,7 @@ void add_map(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->capture_default_str();
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
-    options->source.rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    options->source.rig_file = asked_rig_file(*verb, *common);
     chosen = [=, &stop] {
       return options->source.recording == kLive ? map_live(*common, *options, stop)
                                                 : map_recording(*options);

@@ -44,10 +44,7 @@ int report_recording(const ReportOptions& options) {
 }
 
 int report_live(const CommonOptions& common, const ReportOptions& options, StopSignal& stop) {
-  start_log("swivel", common.log_level == "info" ? "warning" : common.log_level);
-  if (!options.source.calibration_file.empty())
-    throw ExitError(kExitUsage, "--calibration is for recordings; a live rig has its own");
-  const RigFile rig = load_rig_file(common.rig_file);
+  const RigFile rig = begin_live(common, options.source);
   check_mode(rig, options.scan.mode);
   OutputFolder output(options.source.folder, rig.rig, rig, options.source.kinds);
   SweepEvaluator evaluator(options.source.folder, rig.rig, rig, 0.0);
@@ -75,7 +72,7 @@ void add_report(CLI::App& app, StopSignal& stop, Verb& chosen) {
       ->capture_default_str();
   add_common_options(*verb, *common);
   verb->callback([=, &stop, &chosen] {
-    options->source.rig_file = verb->count("--rig") > 0 ? common->rig_file : "";
+    options->source.rig_file = asked_rig_file(*verb, *common);
     chosen = [=, &stop] {
       return options->source.recording == kLive ? report_live(*common, *options, stop)
                                                 : report_recording(*options);
