@@ -1,11 +1,12 @@
 #include "components/alpha_calibrator/alpha_calibration.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "components/common/calibration_file.hpp"
+#include "components/common/listed.hpp"
 #include "components/common/plate_shape_message.hpp"
 #include "components/common/strict_yaml.hpp"
 
@@ -116,7 +117,7 @@ std::vector<AlphaSweep> AlphaCalibration::with_learned_betas(const LearnedPlate&
 
 std::string AlphaCalibration::origin_in_words(const AlphaFit& fit) const {
   return fmt::format("{} sweep{} of mode{} {}", fit.sweeps_used, fit.sweeps_used == 1 ? "" : "s",
-                     modes_.size() == 1 ? "" : "s", fmt::join(modes_, ", "));
+                     modes_.size() == 1 ? "" : "s", listed(modes_));
 }
 
 msg::Calibration AlphaCalibration::to_message(const AlphaFit& fit, const LidarName& lidar,

@@ -1,7 +1,6 @@
 // alpha_calibrator: on request asks for sweeps, and fits in them the plate's mounting angle alpha,
 // from the walls of the room, or how the lidar stands on the axis. The calibration is published,
 // and kept for the next start.
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 
@@ -10,6 +9,7 @@
 #include "components/common/health_reporter.hpp"
 #include "components/common/program.hpp"
 #include "components/common/strict_yaml.hpp"
+#include "components/log/log.hpp"
 
 namespace {
 
@@ -24,13 +24,13 @@ class CalibrationStore {
   // What was found before, if anything was. Before participant.start().
   void load(Calibrator& calibrator) {
     if (!std::filesystem::exists(path_)) {
-      spdlog::info("no calibration yet in {}: the rig is taken as drawn", path_);
+      log_info("no calibration yet in {}: the rig is taken as drawn", path_);
       return;
     }
     saved_ = load_calibration(path_);
     const std::string wrong = calibrator.know(*saved_);
     if (!wrong.empty()) throw ConfigurationError(path_ + ": " + wrong);
-    spdlog::info("the calibration of {} is in use: {}", path_, saved_->provenance());
+    log_info("the calibration of {} is in use: {}", path_, saved_->provenance());
   }
 
   void publish_saved() {
@@ -72,8 +72,8 @@ void calibrate(const CommonOptions& options, const std::string& calibration_path
   Calibrator calibrator(
       rig, {[&](const msg::SweepRequest& request) { requests.write(msg::SweepRequest(request)); },
             [&](const msg::CalibrationProgress& step) {
-              spdlog::info("{} of {} sweeps: {}", step.sweeps_used(), step.sweeps_wanted(),
-                           step.words());
+              log_info("{} of {} sweeps: {}", step.sweeps_used(), step.sweeps_wanted(),
+                       step.words());
               progress.write(msg::CalibrationProgress(step));
             },
             [&](const msg::Calibration& calibration) { store.publish(calibration); }});

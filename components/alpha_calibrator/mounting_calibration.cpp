@@ -1,12 +1,13 @@
 #include "components/alpha_calibrator/mounting_calibration.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 
 #include "components/common/calibration_file.hpp"
 #include "components/common/calibration_use.hpp"
+#include "components/common/listed.hpp"
 
 namespace swivel {
 namespace {
@@ -26,7 +27,7 @@ std::string joint_in_words(const JointMounting& joint, std::size_t sweeps) {
   std::string words = fmt::format(
       "{} from {} sweep{}; planes {:.1f} mm thick; chi-square {:.1f} of {:.0f}; not seen: {}",
       mounting_in_words(joint.fit), sweeps, sweeps == 1 ? "" : "s", mm_from_m(joint.fit.residual_m),
-      joint.scatter.sum, joint.scatter.freedom, fmt::join(joint.fit.unobservable, ", "));
+      joint.scatter.sum, joint.scatter.freedom, listed(joint.fit.unobservable));
   if (!joint.fit.advice.empty()) words += "; " + joint.fit.advice;
   return words;
 }
@@ -47,7 +48,7 @@ std::string mounting_in_words(const MountingFit& fit) {
   }
   if (is_seen(fit.solution, kAxisHysteresis))
     say("hysteresis", kAxisHysteresis, deg_from_rad(1.0), "deg");
-  return fmt::format("{}", fmt::join(words, ", "));
+  return fmt::format("{}", listed(words));
 }
 
 CalibrationAdded MountingCalibration::add(int mode, const MountingResult& result) {

@@ -1,11 +1,11 @@
 // attitude_corrector: raw clouds in, attitudes and corrected clouds out.
-#include <spdlog/spdlog.h>
 
 #include "components/attitude_corrector/corrector.hpp"
 #include "components/attitude_corrector/sweep_and_cloud.hpp"
 #include "components/common/cloud_message.hpp"
 #include "components/common/health_reporter.hpp"
 #include "components/common/program.hpp"
+#include "components/log/log.hpp"
 
 namespace {
 
@@ -23,8 +23,8 @@ class CorrectionStage {
   void set_calibration(const msg::Calibration& calibration) {
     const std::string wrong = corrector_.set_calibration(calibration);
     if (!wrong.empty()) return health_.error("a calibration was refused: " + wrong);
-    spdlog::info("calibration: alpha {:.4f} deg, from {}", calibration.alpha_deg(),
-                 calibration.provenance());
+    log_info("calibration: alpha {:.4f} deg, from {}", calibration.alpha_deg(),
+             calibration.provenance());
   }
 
   void take(const msg::Health& health) {
@@ -67,9 +67,9 @@ class CorrectionStage {
 
   void tell(const msg::Attitude& attitude) {
     if (Corrector::in_base(attitude.verdict())) {
-      spdlog::info("sweep {}: phi_offset {:.3f} +- {:.3f} deg, alpha {}", attitude.sweep_id(),
-                   attitude.phi_offset_deg(), attitude.phi_offset_sigma_deg(),
-                   attitude.calibrated() ? "calibrated" : "as drawn, not calibrated");
+      log_info("sweep {}: phi_offset {:.3f} +- {:.3f} deg, alpha {}", attitude.sweep_id(),
+               attitude.phi_offset_deg(), attitude.phi_offset_sigma_deg(),
+               attitude.calibrated() ? "calibrated" : "as drawn, not calibrated");
       if (!attitude.warning().empty()) health_.error(attitude.warning());
     } else {
       health_.error("sweep " + std::to_string(attitude.sweep_id()) +

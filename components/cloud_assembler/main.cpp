@@ -1,11 +1,11 @@
 // cloud_assembler: scan lines, axis angles and windows in, organised clouds out.
-#include <spdlog/spdlog.h>
 
 #include "components/cloud_assembler/assembler.hpp"
 #include "components/common/calibration_use.hpp"
 #include "components/common/cloud_message.hpp"
 #include "components/common/health_reporter.hpp"
 #include "components/common/program.hpp"
+#include "components/log/log.hpp"
 
 namespace {
 
@@ -33,8 +33,8 @@ class SweepPublisher {
     if (assembled.cloud.points.empty()) return;
     to_message(assembled.cloud, sweep.first_beam_time_ns(), frame_, message_);
     if (!clouds_.write(message_)) health_.error("a raw cloud could not be sent");
-    spdlog::info("sweep {}: mode {}, {} of {} lines", sweep.sweep_id(), sweep.mode(),
-                 sweep.lines_used(), sweep.lines_expected());
+    log_info("sweep {}: mode {}, {} of {} lines", sweep.sweep_id(), sweep.mode(),
+             sweep.lines_used(), sweep.lines_expected());
   }
 
   std::uint64_t clouds_written() const { return clouds_.written(); }
@@ -70,7 +70,7 @@ class Mounting {
     const bool told = calibration && tells_mounting(*calibration);
     assembler_.set_geometry(told ? calibrated_geometry(drawn_, *calibration) : drawn_);
     health_.set_fact("mounting", told ? "calibrated" : "as drawn");
-    spdlog::info("mounting {}", told ? "from " + calibration->provenance() : "as drawn");
+    log_info("mounting {}", told ? "from " + calibration->provenance() : "as drawn");
   }
 
   RigGeometry drawn_;

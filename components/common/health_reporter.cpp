@@ -1,11 +1,11 @@
 #include "components/common/health_reporter.hpp"
 
-#include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
 #include <array>
 
+#include "components/log/log.hpp"
 #include "hardware/io/clock.hpp"
 
 namespace swivel {
@@ -57,7 +57,7 @@ void HealthReporter::set_state(msg::HealthState state, const std::string& doing)
 }
 
 void HealthReporter::error(const std::string& what) {
-  spdlog::error("{}", what);
+  log_error("{}", what);
   const std::lock_guard lock(mutex_);
   health_.last_error(what);
   health_.last_error_time_ns(now_ns());

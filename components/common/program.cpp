@@ -1,7 +1,5 @@
 #include "components/common/program.hpp"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <time.h>
 
 #include <CLI/App.hpp>
@@ -12,6 +10,7 @@
 
 #include "components/common/strict_yaml.hpp"
 #include "components/dds/fast_dds_log.hpp"
+#include "components/log/log.hpp"
 
 namespace swivel {
 
@@ -102,10 +101,7 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
 }
 
 void start_log(const std::string& program, const std::string& level) {
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>()));
-  spdlog::set_pattern("%H:%M:%S.%e %-7l %n: %v");
-  spdlog::set_level(spdlog::level::from_str(level));
+  open_log(program, level);
   log_what_fast_dds_says();
 }
 

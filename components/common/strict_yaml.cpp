@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "components/common/listed.hpp"
+
 namespace swivel {
 namespace {
 
@@ -66,12 +68,6 @@ void require_an_end(const std::string& text) {
   EventLimit limit(text.size());
   while (parser.HandleNextDocument(limit)) {
   }
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 // "xyz_m" for "xyz_mm": the same quantity in another unit.
@@ -234,7 +230,7 @@ std::vector<std::string> YamlSection::texts(const std::string& key) {
 std::string YamlSection::one_of(const std::string& key, const std::vector<std::string>& words) {
   std::string word = text(key);
   if (std::find(words.begin(), words.end(), word) == words.end()) {
-    refuse(key, "is '" + word + "', must be one of: " + joined(words));
+    refuse(key, "is '" + word + "', must be one of: " + listed(words));
   }
   return word;
 }
@@ -247,7 +243,7 @@ void YamlSection::finish() const {
       if (without_unit(known) == without_unit(key)) hint = "; did you mean '" + known + "'?";
     }
     if (hint.empty()) {
-      hint = "; known here: " + joined(std::vector<std::string>(known_.begin(), known_.end()));
+      hint = "; known here: " + listed(known_);
     }
     refuse(key, "is not a known key" + hint);
   }

@@ -1,9 +1,9 @@
 #include "components/dds/fast_dds_log.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <fastdds/dds/log/Log.hpp>
 #include <memory>
+
+#include "components/log/log.hpp"
 
 namespace swivel {
 namespace {
@@ -13,8 +13,8 @@ using eprosima::fastdds::dds::Log;
 class LogIntoOurs : public eprosima::fastdds::dds::LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {
-    const auto level = entry.kind == Log::Kind::Error ? spdlog::level::warn : spdlog::level::debug;
-    spdlog::log(level, "Fast DDS: {}", entry.message);
+    const auto level = entry.kind == Log::Kind::Error ? LogLevel::kWarning : LogLevel::kDebug;
+    log_words(level, "Fast DDS: " + entry.message);
   }
 };
 

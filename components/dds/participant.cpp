@@ -1,7 +1,5 @@
 #include "components/dds/participant.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <fastrtps/types/TypeObjectFactory.h>
 #include <algorithm>
 #include <deque>
@@ -14,6 +12,7 @@
 #include <typeinfo>
 
 #include "components/dds/participant_qos.hpp"
+#include "components/log/log.hpp"
 
 // Fast DDS 2.9 rebuilds every type that any peer describes, whether somebody wants to know or not,
 // and crashes where that is a sequence of structs that it has not met: one foreign program would
@@ -295,7 +294,7 @@ void Participant::handle_reader_status(Endpoint& endpoint) {
   if (changes.is_active(fast::StatusMask::subscription_matched())) {
     fast::SubscriptionMatchedStatus status;
     endpoint.reader->get_subscription_matched_status(status);
-    spdlog::debug("{}: {} writers", endpoint.topic, status.current_count);
+    log_debug("{}: {} writers", endpoint.topic, status.current_count);
   }
 }
 
@@ -310,16 +309,16 @@ void Participant::handle_writer_status(Endpoint& endpoint) {
   if (changes.is_active(fast::StatusMask::publication_matched())) {
     fast::PublicationMatchedStatus status;
     endpoint.writer->get_publication_matched_status(status);
-    spdlog::debug("{}: {} readers", endpoint.topic, status.current_count);
+    log_debug("{}: {} readers", endpoint.topic, status.current_count);
   }
 }
 
 void Participant::report_peers() {
   for (const auto& news : peers_->take_news()) {
     if (news.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) {
-      spdlog::info("{} is here", news.name);
+      log_info("{} is here", news.name);
     } else if (news.status == ParticipantDiscoveryInfo::REMOVED_PARTICIPANT) {
-      spdlog::info("{} has left", news.name);
+      log_info("{} has left", news.name);
     } else if (news.status == ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
       warn(news.name + " vanished: no sign of life for 5 s; did it crash, is the network down?");
     }
@@ -358,7 +357,7 @@ void Participant::count_gap(const std::string& topic, std::uint64_t& last, std::
 }
 
 void Participant::warn(const std::string& problem) {
-  spdlog::warn("{}", problem);
+  log_warning("{}", problem);
   if (on_problem_) on_problem_(problem);
 }
 

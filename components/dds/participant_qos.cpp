@@ -3,7 +3,6 @@
 #include <fastdds/rtps/attributes/ServerAttributes.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <charconv>
@@ -12,6 +11,7 @@
 
 #include "components/dds/security.hpp"
 #include "components/dds/shared_memory.hpp"
+#include "components/log/log.hpp"
 
 namespace swivel {
 
@@ -100,7 +100,7 @@ void warn_of_other_users(const fast::DomainParticipantQos& qos) {
   });
   if (!shares) return;
   for (const uid_t user : count_shared_memory().other_users) {
-    spdlog::warn(
+    log_warning(
         "user {} runs DDS programs here, and shared memory does not cross users: what they and "
         "we send may not arrive; run as one user, or one side with --network loopback_udp",
         user);
@@ -111,7 +111,7 @@ void warn_of_small_udp_buffers() {
   int largest_bytes = 0;
   std::ifstream("/proc/sys/net/core/rmem_max") >> largest_bytes;
   if (largest_bytes > 0 && largest_bytes < kUdpBufferBytes) {
-    spdlog::warn(
+    log_warning(
         "net.core.rmem_max is {} bytes: clouds to other machines may be slow; "
         "as root: sysctl -w net.core.rmem_max={} net.core.wmem_max={}",
         largest_bytes, kUdpBufferBytes, kUdpBufferBytes);

@@ -1,11 +1,10 @@
 #include "components/gateway/gateway.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "components/dds/any_topic.hpp"
 #include "components/gateway/channels.hpp"
 #include "components/gateway/metrics.hpp"
 #include "components/gateway/page_messages.hpp"
+#include "components/log/log.hpp"
 #include "hardware/io/clock.hpp"
 #include "swivel_embedded.hpp"
 
@@ -99,11 +98,11 @@ void Gateway::obey(const std::string& text) {
     ++commands_refused_;
     answer_ = command.reason();
   } else if (command->cancel) {
-    spdlog::info("the page cancels");
+    log_info("the page cancels");
     requester_.cancel();
     requester_.forget();
   } else {
-    spdlog::info("the page asks for a sweep in mode {}", command->mode);
+    log_info("the page asks for a sweep in mode {}", command->mode);
     answer_.clear();
     requester_.request(new_request_id(), command->mode, 1);
   }

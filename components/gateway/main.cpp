@@ -1,7 +1,6 @@
 // view_gateway: a page that shows what the scanner sees, for a browser, and the Foxglove protocol
 // on the same port. A program of its own, since `swivel` has 70 MB of libraries for pictures.
 #include <malloc.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

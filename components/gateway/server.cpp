@@ -1,13 +1,12 @@
 // The one file that compiles Boost.Beast, which takes a minute.
 #include "components/gateway/server.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <thread>
 
 #include "components/gateway/http_session.hpp"
+#include "components/log/log.hpp"
 
 namespace swivel {
 namespace {
@@ -106,7 +105,7 @@ class Server::Implementation {
       try {
         context_.run();
       } catch (const std::exception& error) {
-        spdlog::error("one request or client failed: {}", error.what());
+        log_error("one request or client failed: {}", error.what());
       }
     }
   }

@@ -1,6 +1,5 @@
 // hokuyo_reader: a Hokuyo lidar on TCP or a serial device in, scan lines out. It streams at all
 // times and knows nothing of sweeps.
-#include <spdlog/spdlog.h>
 
 #include <thread>
 
@@ -10,6 +9,7 @@
 #include "components/common/rig_file.hpp"
 #include "components/common/strict_yaml.hpp"
 #include "components/common/wire_publisher.hpp"
+#include "components/log/log.hpp"
 #include "hardware/lidar/scip_client.hpp"
 
 namespace {
@@ -64,7 +64,7 @@ void tell(const LidarReport& report, HealthReporter& health) {
   if (report.state == LidarState::kWaiting || report.state == LidarState::kTrouble) {
     health.error(report.words);
   } else {
-    spdlog::info("{}", report.words);
+    log_info("{}", report.words);
   }
   health.set_state(health_state(report.state), report.words);
 }

@@ -1,6 +1,5 @@
 // stepper_sequencer: homes the shaft and, for each request, turns it through a sweep and back.
 // Says when the speed is constant, and the axis angle over time.
-#include <spdlog/spdlog.h>
 
 #include "components/common/health_reporter.hpp"
 #include "components/common/phase_word.hpp"
@@ -8,6 +7,7 @@
 #include "components/common/rig_file.hpp"
 #include "components/common/strict_yaml.hpp"
 #include "components/common/wire_publisher.hpp"
+#include "components/log/log.hpp"
 #include "components/stepper_sequencer/sequencer.hpp"
 
 namespace {
@@ -44,9 +44,9 @@ void tell(const msg::Sweep& sweep, HealthReporter& health) {
   if (sweep.phase() == msg::PHASE_FAULT) {
     health.error("motor fault" + reason);
   } else if (sweep.phase() == msg::PHASE_REFUSED) {
-    spdlog::warn("request refused{}", reason);
+    log_warning("request refused{}", reason);
   } else if (sweep.window_first_line() == 0) {  // stop_and_go cruises once a line
-    spdlog::info("{}{}", phase_word(sweep.phase()), reason);
+    log_info("{}{}", phase_word(sweep.phase()), reason);
   }
 }
 
@@ -72,7 +72,7 @@ class Audience {
     const bool has_left = listeners == 0 && listeners_ > 0;
     listeners_ = listeners;
     if (!has_left) return;
-    spdlog::warn("nobody listens any more: a sweep under way is cancelled");
+    log_warning("nobody listens any more: a sweep under way is cancelled");
     msg::SweepRequest cancel;
     cancel.cancel(true);
     sequencer.request(cancel);

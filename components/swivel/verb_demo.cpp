@@ -1,7 +1,7 @@
 // swivel demo: five processes turn the simulated bench's lidar and stepper into corrected
 // clouds, and the result is held against the bench's truth.
-#include <spdlog/spdlog.h>
 
+#include <fmt/core.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <array>

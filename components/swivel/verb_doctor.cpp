@@ -1,6 +1,6 @@
 // swivel doctor: what would keep a scan from working on this computer, and what to do about it.
-#include <spdlog/spdlog.h>
 
+#include <fmt/core.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>

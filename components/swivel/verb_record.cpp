@@ -1,7 +1,7 @@
 // swivel record: topics into an MCAP file, byte for byte.
 // swivel capture: likewise, what passes between the computer and the devices.
+#include <fmt/core.h>
 #include <signal.h>
-#include <spdlog/fmt/fmt.h>
 #include <time.h>
 #include <unistd.h>
 

@@ -1,5 +1,4 @@
 // swivel replay: a recording in place of the hardware, on the same topics.
-#include <spdlog/spdlog.h>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "components/common/program.hpp"
+#include "components/log/log.hpp"
 #include "components/mcap/reader.hpp"
 #include "components/recording/mcap_recording.hpp"
 #include "components/swivel/offline/offline_pipeline.hpp"
@@ -97,7 +97,7 @@ class Pace {
     const std::chrono::duration<double> passed(std::min((time_s - first_s_) / rate_, kLongest_s));
     const auto due = start_ + std::chrono::duration_cast<steady_clock::duration>(passed);
     const auto left = std::chrono::ceil<milliseconds>(due - steady_clock::now());
-    if (left > milliseconds(10000)) spdlog::info("nothing for {} s", left.count() / 1000);
+    if (left > milliseconds(10000)) log_info("nothing for {} s", left.count() / 1000);
     if (left.count() > 0) stop.wait_for(left);
   }
 

@@ -1,6 +1,6 @@
 // swivel status: who is alive, what it does, at what rate, and what went wrong last.
-#include <spdlog/spdlog.h>
 
+#include <fmt/core.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <iostream>

@@ -1,7 +1,6 @@
 // swivel ls, hz, bw, delay, echo: of live topics and of recordings alike.
+#include <fmt/core.h>
 #include <unistd.h>
-
-#include <spdlog/spdlog.h>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

@@ -1,5 +1,4 @@
 // swivel up: the participants of a role, until Ctrl-C or until one of them ends.
-#include <spdlog/spdlog.h>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -7,6 +6,7 @@
 
 #include "components/common/program.hpp"
 #include "components/common/rig_file.hpp"
+#include "components/log/log.hpp"
 #include "components/swivel/live/participants.hpp"
 #include "components/swivel/verbs.hpp"
 
@@ -19,7 +19,7 @@ int up(const CommonOptions& common, const ParticipantsOptions& options, StopSign
   Participants participants(common, options);
   while (!stop.wait_for(std::chrono::milliseconds(200))) {
     if (const auto how = participants.ended()) {
-      spdlog::error("{}; stopping the others", *how);
+      log_error("{}; stopping the others", *how);
       return participants.exit_code() == 0 ? kExitInternal : participants.exit_code();
     }
   }

@@ -1,12 +1,12 @@
 // swivel-bench: a lidar on TCP and a stepper on a pty that are not there, and the truth about
 // them.
-#include <spdlog/spdlog.h>
 
 #include <future>
 #include <iostream>
 #include <thread>
 
 #include "components/common/program.hpp"
+#include "components/log/log.hpp"
 #include "components/swivel_bench/bench_options.hpp"
 #include "components/swivel_bench/capture_file.hpp"
 #include "hardware/io/wake_up.hpp"
@@ -23,12 +23,12 @@ void print_addresses(const Bench& bench, const std::string& link) {
 }
 
 void log_losses(const sim::Bench& bench) {
-  spdlog::info("{} lines sent", bench.lines_sent());
+  log_info("{} lines sent", bench.lines_sent());
   if (bench.scans_dropped() > 0) {
-    spdlog::warn("{} scans dropped: the client reads too slowly", bench.scans_dropped());
+    log_warning("{} scans dropped: the client reads too slowly", bench.scans_dropped());
   }
   if (bench.stepper_bytes_lost() > 0) {
-    spdlog::warn("{} bytes to the stepper lost: its buffer was full", bench.stepper_bytes_lost());
+    log_warning("{} bytes to the stepper lost: its buffer was full", bench.stepper_bytes_lost());
   }
 }
 
@@ -50,12 +50,12 @@ void serve(Bench& bench, const std::string& link, StopSignal& stop) {
 void replay_capture(const std::string& path, const sim::BenchOptions& options, StopSignal& stop) {
   auto capture = load_capture(path);
   if (!capture) throw ExitError(kExitBadData, capture.reason());
-  for (const std::string& remark : capture->remarks) spdlog::info("{}", remark);
+  for (const std::string& remark : capture->remarks) log_info("{}", remark);
   sim::CaptureBench bench({std::move(capture->lidar), std::move(capture->stepper),
                            options.server.port, options.stepper_link},
-                          [](const std::string& words) { spdlog::warn("{}", words); });
+                          [](const std::string& words) { log_warning("{}", words); });
   serve(bench, options.stepper_link, stop);
-  spdlog::info("{} times something else was asked than in the capture", bench.differences());
+  log_info("{} times something else was asked than in the capture", bench.differences());
 }
 
 }  // namespace

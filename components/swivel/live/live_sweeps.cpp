@@ -1,10 +1,10 @@
 #include "components/swivel/live/live_sweeps.hpp"
 
 #include <fmt/core.h>
-#include <spdlog/spdlog.h>
 
 #include "components/common/cloud_message.hpp"
 #include "components/common/phase_word.hpp"
+#include "components/log/log.hpp"
 
 namespace swivel {
 namespace {
@@ -101,7 +101,7 @@ void LiveSweeps::take_cloud(const PointCloud2& message, OrganisedCloud Processed
   const std::lock_guard lock(mutex_);
   OrganisedCloud taken;
   const std::string wrong = from_message(message, taken);
-  if (!wrong.empty()) return spdlog::warn("a cloud was refused: {}", wrong);
+  if (!wrong.empty()) return log_warning("a cloud was refused: {}", wrong);
   parts_at(stamp_ns(message)).sweep.*cloud = std::move(taken);
   hand_out_if_whole(stamp_ns(message));
 }

@@ -1,8 +1,8 @@
 #include "components/swivel/live/participants.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <map>
+
+#include "components/log/log.hpp"
 
 namespace swivel {
 namespace {
@@ -52,8 +52,7 @@ std::optional<std::string> Participants::ended() {
 void Participants::stop() {
   for (const auto& child : children_) child->ask_to_stop();
   for (const auto& child : children_) {
-    if (!child->wait_or_kill(kPatience))
-      spdlog::error("{} did not stop and was killed", child->name());
+    if (!child->wait_or_kill(kPatience)) log_error("{} did not stop and was killed", child->name());
   }
   children_.clear();
 }

@@ -1,6 +1,6 @@
 #include "components/swivel/offline/mounting_pictures.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>

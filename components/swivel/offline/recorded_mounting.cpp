@@ -1,6 +1,6 @@
 #include "components/swivel/offline/recorded_mounting.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <iostream>
@@ -12,6 +12,7 @@
 #include "components/cloud_assembler/assembler.hpp"
 #include "components/common/calibration_file.hpp"
 #include "components/common/json_text.hpp"
+#include "components/common/listed.hpp"
 #include "components/common/program.hpp"
 #include "components/swivel/offline/mounting_json.hpp"
 #include "components/swivel/offline/mounting_pictures.hpp"
@@ -69,7 +70,7 @@ std::vector<RecordedView> views_of(Recording& recording, const RigFile& rig, boo
 }
 
 std::string name_of_sweeps(const std::vector<std::size_t>& sweeps) {
-  return fmt::format("sweep{} {}", sweeps.size() == 1 ? "" : "s", fmt::join(sweeps, ", "));
+  return fmt::format("sweep{} {}", sweeps.size() == 1 ? "" : "s", listed(sweeps));
 }
 
 Json to_json(const FittedView& fitted) {

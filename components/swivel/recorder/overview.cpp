@@ -1,6 +1,6 @@
 #include "components/swivel/recorder/overview.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

@@ -1,11 +1,11 @@
 #include "components/swivel/recorder/player.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <chrono>
 #include <functional>
 #include <thread>
+
+#include "components/log/log.hpp"
 
 namespace swivel {
 namespace {
@@ -88,7 +88,7 @@ void Player::play_sweep(const ReplayMessage& message) {
 void Player::send(const ReplayMessage& message) {
   Output& output = outputs_.at(message.topic->name);
   if (!output.writer->write(message.cdr)) {
-    if (++output.refused == 1) spdlog::error("a message of {} is refused", message.topic->name);
+    if (++output.refused == 1) log_error("a message of {} is refused", message.topic->name);
     return;
   }
   const bool is_line = message.topic->is(kScanLineTopic);
@@ -103,12 +103,12 @@ void Player::await_stages() {
   if (sweep_ == 0 || outputs_.count(kScanLineTopic.name) == 0) return;
   const std::uint64_t sweep = std::exchange(sweep_, 0);
   if (!await([&] { return last_assembled_ == sweep; })) {
-    spdlog::warn("sweep {} was not assembled within 5 s", sweep);
+    log_warning("sweep {} was not assembled within 5 s", sweep);
     return;
   }
   if (!has_corrector_ || !last_has_cloud_) return;
   has_corrector_ = await([&] { return last_corrected_ == sweep; });
-  if (!has_corrector_) spdlog::warn("no attitude came within 5 s: is there no corrector?");
+  if (!has_corrector_) log_warning("no attitude came within 5 s: is there no corrector?");
 }
 
 void Player::finish() {

@@ -1,8 +1,7 @@
 #include "components/swivel/recorder/recorder.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "components/common/program.hpp"
+#include "components/log/log.hpp"
 #include "hardware/io/clock.hpp"
 
 namespace swivel {
@@ -58,7 +57,7 @@ void Recorder::take(const AnyTopic& topic, CdrSample&& sample) {
   count.bytes += sample.cdr.size();
   if (!failed_ && queue_.push({&topic, now_ns(), std::move(sample)})) return;
   if (++count.dropped == 1 && !failed_) {
-    spdlog::error("the disk is too slow: messages of {} are lost", topic.full_name(rig_));
+    log_error("the disk is too slow: messages of {} are lost", topic.full_name(rig_));
   }
 }
 
@@ -117,7 +116,7 @@ Outcome Recorder::write_kept() {
   for (const RecordedSample& sample : kept_) {
     if (Outcome written = files_.write(sample); !written) return written;
   }
-  spdlog::info("the last {} messages are in {}", kept_.size(), files_.names().back());
+  log_info("the last {} messages are in {}", kept_.size(), files_.names().back());
   return files_.close();
 }
 

@@ -1,6 +1,6 @@
 #include "components/swivel/recorder/timed_cloud_files.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

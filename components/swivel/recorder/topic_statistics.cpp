@@ -1,8 +1,10 @@
 #include "components/swivel/recorder/topic_statistics.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include <algorithm>
+
+#include "components/common/listed.hpp"
 
 namespace swivel {
 
@@ -61,7 +63,7 @@ nlohmann::ordered_json TopicStatistics::json() const {
 }
 
 std::string TopicStatistics::listed() const {
-  return fmt::format("{}, {} messages from {}", type_, messages_, fmt::join(participants_, ", "));
+  return fmt::format("{}, {} messages from {}", type_, messages_, swivel::listed(participants_));
 }
 
 std::string TopicStatistics::rate() const {
