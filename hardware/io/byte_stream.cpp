@@ -20,7 +20,7 @@ constexpr std::string_view kTcpScheme = "tcp://";
 constexpr std::size_t kMostBytesAtOnce = 16384;
 
 bool nothing_yet(int error) {
-  return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
+  return error == EAGAIN || error == EINTR;
 }
 
 // EIO is what a pty or an unplugged USB adapter says.

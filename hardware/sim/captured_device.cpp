@@ -11,7 +11,7 @@
 namespace swivel::sim {
 namespace {
 
-constexpr std::size_t kLongestRequest = 1000;
+constexpr std::size_t kLongestUnanswered = 1000;
 // Less than that is how computers are; to follow it would disturb who times the stream.
 constexpr std::int64_t kNegligible_ns = 150 * kMillisecond_ns;
 constexpr std::int64_t kSmallStep_ns = 300 * kMillisecond_ns;  // which no client takes amiss
@@ -96,7 +96,7 @@ void CapturedDevice::receive(std::string_view bytes, std::int64_t now_ns) {
        request = take_request(received_, at_once_)) {
     take(request, now_ns);
   }
-  if (received_.size() <= kLongestRequest) return;
+  if (received_.size() <= kLongestUnanswered) return;
   differ("what is sent has no line end");
   received_.clear();
 }
