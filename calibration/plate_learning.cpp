@@ -13,6 +13,11 @@ namespace {
 constexpr double kLeastHeightSigma_m = 0.0001;
 constexpr double kLeastTiltSigma_rad = rad_from_deg(0.05);
 constexpr double kLeastGrowthSigma_m = 0.0001;
+constexpr double kLeastLogSoftnessSigma = 0.5;
+
+// No edge is taken for sharper: beams lie further apart, and what is told by none of them makes the
+// next fit restless.
+constexpr double kSharpestEdge_m = 0.0002;
 
 ShapeVector values_of(const PlateShape& shape) {
   ShapeVector values;
@@ -50,11 +55,13 @@ PlateShape shape_of(const Combined& all, const PlateShape& drawn) {
   const auto known = [&](Eigen::Index index, double least_sigma) {
     return Known{all.values[index], std::max(std::sqrt(all.covariance(index, index)), least_sigma)};
   };
-  PlateShape shape = drawn;  // the softness too: each sweep shows it well enough
+  PlateShape shape = drawn;
   shape.height_m = known(0, kLeastHeightSigma_m);
   shape.roll_rad = known(1, kLeastTiltSigma_rad);
   shape.pitch_rad = known(2, kLeastTiltSigma_rad);
   shape.growth_m = known(3, kLeastGrowthSigma_m);
+  shape.log_softness = known(4, kLeastLogSoftnessSigma);
+  shape.log_softness.value = std::max(shape.log_softness.value, std::log(kSharpestEdge_m));
   return shape;
 }
 

@@ -44,12 +44,17 @@ class Spot {
   };
   class Bundle;
 
-  std::vector<PartialHit> hits(const World& world, const Bundle& bundle) const;
+  static std::vector<Offset> spiral(int count);
+  static std::vector<PartialHit> hits(const World& world, const Bundle& bundle,
+                                      const std::vector<Offset>& rays);
   std::vector<Return> returns(std::vector<PartialHit> hits) const;
+  static double total_energy(const std::vector<Return>& returns);
+  bool close_call(const std::vector<Return>& returns) const;
   Echo chosen(const std::vector<Return>& returns, Random& random) const;
 
   LidarOptions options_;
   std::vector<Offset> rays_;
+  std::vector<Offset> fine_rays_;
   std::vector<Offset> rim_;
 };
 

@@ -43,6 +43,20 @@ TEST(PlateLearning, ManyFitsSharpenTheShapeAndTheKnownBeforeCountsOnce) {
   }
 }
 
+// A rig whose edges are sharper than drawn is known for it, but for none sharper than beams can
+// tell.
+TEST(PlateLearning, TheSoftnessIsLearnedDownToWhatBeamsCanTell) {
+  PlateFit fit = a_fit();
+  const PlateShape drawn;
+  for (const double softness_m : {0.0005, 0.00002}) {
+    fit.shape.log_softness.value = std::log(softness_m);
+    const LearnedPlate learned = learn_plate({fit}, drawn);
+    EXPECT_NEAR(std::exp(learned.shape.log_softness.value), std::max(softness_m, 0.0002), 1e-9);
+    EXPECT_LT(learned.shape.log_softness.sigma, drawn.log_softness.sigma);
+    EXPECT_GE(learned.shape.log_softness.sigma, 0.5);
+  }
+}
+
 // A fit whose roll was off by chance: told the roll of all, its azimuth goes along with it.
 TEST(PlateLearning, AFitIsPulledToTheShapeOfAll) {
   const PlateFit fit = a_fit();
