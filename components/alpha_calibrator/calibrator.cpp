@@ -9,8 +9,8 @@ namespace swivel {
 namespace {
 
 // The longest that a whole sweep of any mode and its way through the pipeline take.
-constexpr auto kPatience = std::chrono::seconds(120);
-constexpr std::size_t kMostWaiting = 16;
+constexpr auto kLongestSilence = std::chrono::seconds(120);
+constexpr std::size_t kMostAttitudesWaiting = 16;
 
 }  // namespace
 
@@ -134,7 +134,8 @@ void Calibrator::take(const msg::Attitude& attitude) {
   auto* const alpha = run_ ? std::get_if<AlphaRun>(&run_->kind) : nullptr;
   if (alpha == nullptr) return;
   alpha->attitudes[attitude.first_beam_time_ns()] = attitude;
-  if (alpha->attitudes.size() > kMostWaiting) alpha->attitudes.erase(alpha->attitudes.begin());
+  if (alpha->attitudes.size() > kMostAttitudesWaiting)
+    alpha->attitudes.erase(alpha->attitudes.begin());
   match(*alpha);
 }
 
@@ -199,7 +200,7 @@ void Calibrator::check(std::chrono::steady_clock::time_point now) {
   news_ = false;
   if (!requester_.check(now)) {
     refuse("stepper_sequencer does not answer; does it run? see: swivel status");
-  } else if (now - last_news_ > kPatience) {
+  } else if (now - last_news_ > kLongestSilence) {
     requester_.cancel();
     refuse("no sweep for 2 minutes; see: swivel status");
   }

@@ -48,7 +48,7 @@ std::string mounting_in_words(const MountingFit& fit) {
   }
   if (is_seen(fit.solution, kAxisHysteresis))
     say("hysteresis", kAxisHysteresis, deg_from_rad(1.0), "deg");
-  return fmt::format("{}", listed(words));
+  return listed(words);
 }
 
 CalibrationAdded MountingCalibration::add(int mode, const MountingResult& result) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/dds/bounds.hpp"
+
 namespace swivel {
 namespace {
 
@@ -10,8 +12,6 @@ using std::chrono::steady_clock;
 
 // Bounds on what any writer may make us hold.
 constexpr std::size_t kMostWaitingLines = 400;
-constexpr std::uint32_t kMostLines = 20000;
-constexpr std::size_t kMostBeams = 10000;
 constexpr double kShortestScanNs = 1e5;
 constexpr std::int64_t kLatestNs = 2'147'483'647'000'000'000;  // what a cloud's stamp can hold
 constexpr std::int64_t kAxisMemoryNs = 60'000'000'000;
@@ -24,7 +24,7 @@ constexpr auto kHistoryComesWithin = std::chrono::seconds(2);
 bool well_formed(const msg::ScanLine& line) {
   const std::size_t beams = line.ranges_mm().size();
   const bool intensities_fit = line.intensities().empty() || line.intensities().size() == beams;
-  return beams > 0 && beams <= kMostBeams && intensities_fit &&
+  return beams > 0 && beams <= kMostBeamsOfALine && intensities_fit &&
          std::isfinite(line.first_beam_angle_deg()) && std::isfinite(line.beam_step_deg()) &&
          line.beam_period_ns() > 0.0 && line.scan_period_ns() < 1e10 &&
          line.scan_period_ns() > kShortestScanNs &&
@@ -34,7 +34,7 @@ bool well_formed(const msg::ScanLine& line) {
 
 bool well_formed_window(const msg::Sweep& sweep) {
   return sweep.sweep_id() != 0 && sweep.lines_expected() > 0 &&
-         sweep.lines_expected() <= kMostLines && sweep.window_lines() > 0 &&
+         sweep.lines_expected() <= kMostLinesOfASweep && sweep.window_lines() > 0 &&
          sweep.window_start_ns() < sweep.window_end_ns() &&
          sweep.window_first_line() < sweep.lines_expected() &&
          sweep.window_lines() <= sweep.lines_expected() - sweep.window_first_line();

@@ -3,15 +3,14 @@
 #include <array>
 #include <cstring>
 
+#include "components/dds/bounds.hpp"
+
 namespace swivel {
 namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
 constexpr std::array<const char*, 4> kFieldNames{"x", "y", "z", "intensity"};
-constexpr std::uint32_t kMostLines = 20000;
-constexpr std::uint32_t kMostBeams = 10000;
-constexpr std::uint64_t kMostBytes = 1U << 28;  // 256 MiB, 24 times a cloud of mode 7
 
 std::vector<sensor_msgs::msg::dds_::PointField_> make_fields() {
   std::vector<sensor_msgs::msg::dds_::PointField_> fields(kFieldNames.size());
@@ -70,13 +69,13 @@ std::string wrong_with(const PointCloud2Message& message) {
       message.is_bigendian()) {
     return "its fields are not x, y, z, intensity as little-endian float32";
   }
-  if (message.height() > kMostLines || message.width() > kMostBeams) {
+  if (message.height() > kMostLinesOfASweep || message.width() > kMostBeamsOfALine) {
     return "it claims " + std::to_string(message.height()) + " x " +
            std::to_string(message.width()) + " points";
   }
   const std::uint64_t bytes =
       std::uint64_t{message.height()} * message.width() * sizeof(CloudPoint);
-  if (bytes > kMostBytes || bytes != message.data().size() ||
+  if (bytes > kMostBytesOfACloud || bytes != message.data().size() ||
       message.row_step() != message.width() * sizeof(CloudPoint)) {
     return "its data does not have the size that its shape asks for";
   }

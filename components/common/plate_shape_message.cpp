@@ -14,7 +14,7 @@ constexpr double kMmPerM = mm_from_m(1.0);
 // In the order of the IDL. The softness is told in mm, with its sigma as a part of it.
 constexpr std::size_t kSoftness = 4;
 
-std::array<Known, 6> listed(const PlateShape& shape) {
+std::array<Known, 6> values_in_order(const PlateShape& shape) {
   return {shape.height_m, shape.roll_rad,     shape.pitch_rad,
           shape.growth_m, shape.log_softness, shape.range_offset_m};
 }
@@ -35,7 +35,7 @@ Known from_wire(double value, double sigma, std::size_t index) {
 }  // namespace
 
 void to_message(const LearnedPlate& plate, msg::Calibration& calibration) {
-  const auto shape = listed(plate.shape);
+  const auto shape = values_in_order(plate.shape);
   for (std::size_t index = 0; index < shape.size(); ++index) {
     const Known known = to_wire(shape[index], index);
     calibration.plate_shape()[index] = known.value;

@@ -8,7 +8,6 @@
 namespace swivel {
 namespace {
 
-constexpr Range kAngle{-360.0, 360.0};
 constexpr Range kLength{-100000.0, 100000.0};
 
 std::string read_rig_name(YamlSection& file) {
@@ -37,7 +36,7 @@ LidarSection read_lidar(YamlSection section) {
 StepperSection read_stepper(YamlSection section) {
   StepperSection stepper;
   stepper.address = section.text("address");
-  stepper.home_angle_deg = section.number("home_angle_deg", kAngle);
+  stepper.home_angle_deg = section.number("home_angle_deg", kAnyAngle_deg);
   stepper.cable_limit_deg = section.number("cable_limit_deg", {1.0, 3600.0});
   stepper.max_speed_deg_s = section.number("max_speed_deg_s", {1.0, 720.0}, 720.0);
   stepper.return_speed_deg_s = section.number("return_speed_deg_s", {1.0, 720.0});
@@ -49,7 +48,7 @@ StepperSection read_stepper(YamlSection section) {
 
 Eigen::Isometry3d read_transform(YamlSection& section) {
   const auto xyz_mm = section.numbers("xyz_mm", 3, kLength);
-  const auto rpy_deg = section.numbers("rpy_deg", 3, kAngle);
+  const auto rpy_deg = section.numbers("rpy_deg", 3, kAnyAngle_deg);
   return transform_of({xyz_mm[0], xyz_mm[1], xyz_mm[2]}, {rpy_deg[0], rpy_deg[1], rpy_deg[2]});
 }
 
@@ -68,7 +67,7 @@ void read_mounting(YamlSection section, RigFile& rig) {
 PlateGeometry read_plate(YamlSection section) {
   constexpr Range kPlateLength{1.0, 1000.0};
   PlateGeometry plate;
-  plate.alpha_rad = rad_from_deg(section.number("alpha_deg", kAngle));
+  plate.alpha_rad = rad_from_deg(section.number("alpha_deg", kAnyAngle_deg));
   plate.base_distance_m = m_from_mm(section.number("base_distance_mm", kPlateLength));
   plate.hypotenuse_m = m_from_mm(section.number("hypotenuse_mm", kPlateLength));
   plate.depth_m = m_from_mm(section.number("depth_mm", kPlateLength));

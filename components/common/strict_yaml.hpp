@@ -23,6 +23,8 @@ struct Range {
   double highest;
 };
 
+inline constexpr Range kAnyAngle_deg{-360.0, 360.0};
+
 // A mapping of a YAML file. Every key asked for is remembered; finish() refuses the others.
 class YamlSection {
  public:

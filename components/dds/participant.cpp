@@ -2,16 +2,15 @@
 
 #include <fastrtps/types/TypeObjectFactory.h>
 #include <algorithm>
-#include <deque>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <typeinfo>
 
 #include "components/dds/participant_qos.hpp"
+#include "components/dds/peer_listener.hpp"
 #include "components/log/log.hpp"
 
 // Fast DDS 2.9 rebuilds every type that any peer describes, whether somebody wants to know or not,
@@ -28,62 +27,7 @@ DynamicType_ptr TypeObjectFactory::build_dynamic_type(const std::string&, const 
 namespace swivel {
 
 namespace fast = eprosima::fastdds::dds;
-using eprosima::fastrtps::rtps::GuidPrefix_t;
-using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
-
-// Hears of other participants on Fast DDS's threads, where nothing else may be done, and keeps
-// the news for ours.
-class PeerListener : public fast::DomainParticipantListener {
- public:
-  struct News {
-    std::string name;
-    ParticipantDiscoveryInfo::DISCOVERY_STATUS status;
-  };
-
-  explicit PeerListener(fast::GuardCondition& woken) : woken_(woken) {}
-
-  void on_participant_discovery(fast::DomainParticipant*,
-                                ParticipantDiscoveryInfo&& info) override {
-    {
-      const std::lock_guard lock(mutex_);
-      std::string name = info.info.m_participantName.c_str();
-      if (name.empty()) name = "a participant without a name";  // other vendors send none
-      names_[info.info.m_guid.guidPrefix] = name;
-      news_.push_back({std::move(name), info.status});
-    }
-    woken_.set_trigger_value(true);
-  }
-
-  // Told of each attempt anew: who is refused tries again and again.
-  void onParticipantAuthentication(fast::DomainParticipant*,
-                                   ParticipantAuthenticationInfo&& info) override {
-    if (info.status != ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) return;
-    ++refusals_;
-    woken_.set_trigger_value(true);
-  }
-
-  std::uint64_t refusals() const { return refusals_; }
-
-  std::deque<News> take_news() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(news_, {});
-  }
-
-  // Also of those that have left; empty if never seen.
-  std::string name_of(const GuidPrefix_t& peer) const {
-    const std::lock_guard lock(mutex_);
-    const auto name = names_.find(peer);
-    return name == names_.end() ? "" : name->second;
-  }
-
- private:
-  fast::GuardCondition& woken_;
-  std::atomic<std::uint64_t> refusals_{0};
-  mutable std::mutex mutex_;
-  std::deque<News> news_;
-  std::map<GuidPrefix_t, std::string> names_;
-};
 
 struct Participant::Endpoint {
   std::string topic;

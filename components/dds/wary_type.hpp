@@ -13,6 +13,7 @@
 #include <mutex>
 #include <string>
 
+#include "components/dds/bounds.hpp"
 #include "components/dds/topics.hpp"
 
 namespace swivel {
@@ -47,7 +48,7 @@ class Refusals {
 template <class Message>
 inline constexpr std::uint32_t kMostBytes = 1U << 20;
 template <>
-inline constexpr std::uint32_t kMostBytes<PointCloud2> = (1U << 28) + (1U << 16);
+inline constexpr std::uint32_t kMostBytes<PointCloud2> = kMostBytesOfACloud + (1U << 16);
 
 // Before anything is made room for.
 template <class Message>

@@ -11,9 +11,9 @@
 namespace swivel {
 namespace {
 
-constexpr double kMostBeams = 20000;
+constexpr double kMostBeamsOfACase = 20000;
 constexpr double kMostSweeps = 10000;
-constexpr double kMostLinesOfASweep = 1e6;
+constexpr double kMostLinesOfACase = 1e6;
 
 // The keys and values of the file. The first thing found wrong is kept; what is read after it
 // is of no use and is thrown away with it.
@@ -88,7 +88,7 @@ std::vector<double> MetaTable::numbers(const std::string& key, std::size_t count
 }
 
 void read_lidar(MetaTable& table, CaseMeta& meta) {
-  meta.beams = static_cast<std::size_t>(table.number("n_beams", 2, kMostBeams));
+  meta.beams = static_cast<std::size_t>(table.number("n_beams", 2, kMostBeamsOfACase));
   meta.first_beam_angle_deg = table.number("first_deg", -360.0, 360.0);
   meta.beam_step_deg = table.number("step_deg", -10.0, 10.0);
   meta.nominal_period_s = table.number("period_s", 1e-3, 10.0);
@@ -110,7 +110,7 @@ RecordingFacts::Plate read_plate(MetaTable& table) {
 
 void read_sweeps(MetaTable& table, CaseMeta& meta) {
   const auto count = static_cast<std::size_t>(table.number("sweeps", 1, kMostSweeps));
-  const auto lines = table.numbers("lines_per_sweep", count, 1, kMostLinesOfASweep);
+  const auto lines = table.numbers("lines_per_sweep", count, 1, kMostLinesOfACase);
   meta.sweeps.resize(count);
   for (std::size_t sweep = 0; sweep < count; ++sweep) {
     meta.sweeps[sweep].lines = static_cast<std::uint32_t>(lines[sweep]);

@@ -79,10 +79,6 @@ PointTimes times_of(const ExportOptions& options, const std::string& topic,
   return times;
 }
 
-void require(const Outcome& written) {
-  if (!written) throw ExitError(kExitInputOutput, written.reason());
-}
-
 int export_cloud(const ExportOptions& options) {
   const auto rig = rig_in_mcap(options.recording);
   if (!rig) throw ExitError(kExitBadData, rig.reason());
@@ -91,7 +87,7 @@ int export_cloud(const ExportOptions& options) {
   const RecordedCloud found = find_cloud(options, topic.full_name(*rig));
   const std::string kind = std::filesystem::path(options.output).extension();
   if (kind == ".pcd") {
-    require(write_pcd(options.output, found.cloud));
+    require_written(write_pcd(options.output, found.cloud));
   } else if (kind == ".ply") {
     const auto written = write_ply(options.output, found.cloud);
     if (!written) throw ExitError(kExitInputOutput, written.reason());

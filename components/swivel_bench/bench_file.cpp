@@ -7,7 +7,6 @@
 namespace swivel {
 namespace {
 
-constexpr Range kAngle{-360.0, 360.0};
 constexpr Range kTilt{-45.0, 45.0};
 constexpr Range kPlace{-30000.0, 30000.0};
 constexpr Range kSize{0.1, 60000.0};
@@ -45,14 +44,14 @@ sim::Vector3 read_triple(YamlSection& section, const char* key, Range range,
 
 void read_placement(YamlSection& section, sim::Placement& placement) {
   placement.xyz_mm = read_triple(section, "xyz_mm", kPlace, placement.xyz_mm);
-  placement.rpy_deg = read_triple(section, "rpy_deg", kAngle, placement.rpy_deg);
+  placement.rpy_deg = read_triple(section, "rpy_deg", kAnyAngle_deg, placement.rpy_deg);
 }
 
 sim::Furniture read_furniture(YamlSection& section) {
   sim::Furniture piece;
   read(section, "x_mm", kPlace, piece.x_mm);
   read(section, "y_mm", kPlace, piece.y_mm);
-  read(section, "yaw_deg", kAngle, piece.yaw_deg);
+  read(section, "yaw_deg", kAnyAngle_deg, piece.yaw_deg);
   read(section, "length_mm", kSize, piece.length_mm);
   read(section, "width_mm", kSize, piece.width_mm);
   read(section, "bottom_mm", kPlace, piece.bottom_mm);
@@ -69,7 +68,7 @@ void read_room(YamlSection& section, sim::RoomOptions& room) {
   read(section, "right_mm", kPlace, room.right_mm);
   read(section, "floor_mm", kPlace, room.floor_mm);
   read(section, "roof_mm", kPlace, room.roof_mm);
-  read(section, "yaw_deg", kAngle, room.yaw_deg);
+  read(section, "yaw_deg", kAnyAngle_deg, room.yaw_deg);
   read(section, "front_skew_deg", kTilt, room.front_skew_deg);
   in_section(section, "furniture", [&](YamlSection& pieces) {
     room.furniture.clear();
@@ -80,9 +79,9 @@ void read_room(YamlSection& section, sim::RoomOptions& room) {
   });
 }
 
-void read_plate(YamlSection& section, sim::PlateOptions& plate) {
+void read_plate_of_bench(YamlSection& section, sim::PlateOptions& plate) {
   read(section, "present", plate.present);
-  read(section, "alpha_deg", kAngle, plate.alpha_deg);
+  read(section, "alpha_deg", kAnyAngle_deg, plate.alpha_deg);
   read(section, "base_distance_mm", kSize, plate.base_distance_mm);
   read(section, "hypotenuse_mm", kSize, plate.hypotenuse_mm);
   read(section, "depth_mm", kSize, plate.depth_mm);
@@ -93,7 +92,7 @@ void read_plate(YamlSection& section, sim::PlateOptions& plate) {
 
 void read_clutter(YamlSection& section, sim::ClutterOptions& clutter) {
   read(section, "present", clutter.present);
-  read(section, "azimuth_deg", kAngle, clutter.azimuth_deg);
+  read(section, "azimuth_deg", kAnyAngle_deg, clutter.azimuth_deg);
   read(section, "distance_mm", kSize, clutter.distance_mm);
   read(section, "size_mm", kSize, clutter.size_mm);
 }
@@ -116,7 +115,7 @@ void read_sensor(YamlSection& section, sim::SensorModel& sensor) {
   }
 }
 
-void read_lidar(YamlSection& section, sim::LidarOptions& lidar) {
+void read_lidar_of_bench(YamlSection& section, sim::LidarOptions& lidar) {
   read_sensor(section, lidar.sensor);
   read(section, "bias_deg", kTilt, lidar.bias_deg);
   read(section, "noise_mm", kNoise, lidar.noise_mm);
@@ -157,10 +156,10 @@ void read_encoder(YamlSection& section, sim::EncoderOptions& encoder) {
 
 void read_motor(YamlSection& section, sim::MotorOptions& motor) {
   read(section, "steps_per_turn", {1.0, 1e8}, motor.shaft.steps_per_turn);
-  read(section, "power_up_angle_deg", kAngle, motor.shaft.power_up_angle_deg);
+  read(section, "power_up_angle_deg", kAnyAngle_deg, motor.shaft.power_up_angle_deg);
   read(section, "ripple_deg", kTilt, motor.shaft.ripple_deg);
   read(section, "ripple_period_deg", {0.001, 360.0}, motor.shaft.ripple_period_deg);
-  read(section, "home_angle_deg", kAngle, motor.home_angle_deg);
+  read(section, "home_angle_deg", kAnyAngle_deg, motor.home_angle_deg);
   read(section, "home_sigma_deg", {0.0, 45.0}, motor.home_sigma_deg);
   read(section, "home_time_s", {0.01, 60.0}, motor.home_time_s);
   read(section, "switch_works", motor.switch_works);
@@ -199,11 +198,11 @@ sim::BenchOptions load_bench_file(const std::string& path) {
     in_section(file, key, [&](YamlSection& found) { read_section(found, target); });
   };
   section("room", read_room, options.world.room);
-  section("plate", read_plate, options.world.plate);
+  section("plate", read_plate_of_bench, options.world.plate);
   section("ring_clutter", read_clutter, options.world.ring_clutter);
   section("axis", read_placement, options.lidar.axis);
   section("mounting", read_placement, options.lidar.mounting);
-  section("lidar", read_lidar, options.lidar);
+  section("lidar", read_lidar_of_bench, options.lidar);
   section("timing", read_timing, options.timing);
   section("stepper", read_motor, options.motor);
   section("server", read_server, options.server);

@@ -11,7 +11,7 @@
 namespace swivel {
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMostBytesOfACapture = std::uint64_t{1} << 30;
 
 // By the instant when each was opened.
 using Connections = std::map<std::int64_t, std::vector<sim::CapturedPiece>>;
@@ -57,7 +57,7 @@ Outcome read(McapReader& reader, const std::string& path, Wires& wires) {
       continue;
     }
     add(*wire, wires);
-    if (wires.bytes > kMostBytes)
+    if (wires.bytes > kMostBytesOfACapture)
       return Failure{path + ": more than 1 GB of bytes; take a part of it with: swivel slice"};
   }
   return Done{};

@@ -20,7 +20,7 @@ constexpr std::uint64_t kEnoughSharedMemoryBytes = 8 * 42 * kMegabyte;
 constexpr std::uint64_t kLeastDiskBytes = 100 * kMegabyte;  // a sweep with its pictures
 constexpr std::uint64_t kEnoughDiskBytes = 2000 * kMegabyte;
 
-std::string megabytes(std::uint64_t bytes) {
+std::string megabytes_in_words(std::uint64_t bytes) {
   return std::to_string(bytes / kMegabyte) + " MB";
 }
 
@@ -37,7 +37,8 @@ Diagnosis cannot_look(const std::string& subject, const std::string& what) {
 }  // namespace
 
 Diagnosis judge_shared_memory(std::uint64_t free_bytes) {
-  Diagnosis diagnosis{"shared memory", Grade::kOk, megabytes(free_bytes) + " free in /dev/shm", {}};
+  Diagnosis diagnosis{
+      "shared memory", Grade::kOk, megabytes_in_words(free_bytes) + " free in /dev/shm", {}};
   if (free_bytes >= kEnoughSharedMemoryBytes) return diagnosis;
   diagnosis.grade = free_bytes < kLeastSharedMemoryBytes ? Grade::kBad : Grade::kWarn;
   diagnosis.advice =
@@ -47,7 +48,8 @@ Diagnosis judge_shared_memory(std::uint64_t free_bytes) {
 }
 
 Diagnosis judge_disk(std::uint64_t free_bytes, const std::string& folder) {
-  Diagnosis diagnosis{"disk", Grade::kOk, megabytes(free_bytes) + " free in " + folder, {}};
+  Diagnosis diagnosis{
+      "disk", Grade::kOk, megabytes_in_words(free_bytes) + " free in " + folder, {}};
   if (free_bytes >= kEnoughDiskBytes) return diagnosis;
   diagnosis.grade = free_bytes < kLeastDiskBytes ? Grade::kBad : Grade::kWarn;
   diagnosis.advice = "make room: a sweep takes up to 50 MB with its files and pictures";
@@ -59,7 +61,7 @@ Diagnosis check_stale_segments(const std::string& folder) {
   if (census.stale == 0) return {"stale segments", Grade::kOk, "none in " + folder, {}};
   return {"stale segments", Grade::kWarn,
           std::to_string(census.stale) + " left by processes that were killed, " +
-              megabytes(census.stale_bytes) + " in " + folder,
+              megabytes_in_words(census.stale_bytes) + " in " + folder,
           "fastdds shm clean (of the package fastdds-tools)"};
 }
 

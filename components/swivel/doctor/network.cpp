@@ -19,7 +19,7 @@
 namespace swivel {
 namespace {
 
-constexpr auto kPatience = std::chrono::milliseconds(2000);
+constexpr auto kAnswersWithin = std::chrono::milliseconds(2000);
 constexpr int kEchoPatience_ms = 200;
 constexpr const char* kGroup = "239.255.83.87";  // administratively scoped; not that of DDS
 
@@ -82,12 +82,12 @@ bool echoes(const Interface& interface) {
 }
 
 Result<LidarIdentity> ask_name(ByteStream& connection) {
-  const Outcome asked = connection.write_all("VV\n", kPatience);
+  const Outcome asked = connection.write_all("VV\n", kAnswersWithin);
   if (!asked) return Failure{asked.reason()};
   scip::Parser parser;
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto deadline = std::chrono::steady_clock::now() + kAnswersWithin;
   while (std::chrono::steady_clock::now() < deadline) {
-    const Received received = connection.read_some(kPatience);
+    const Received received = connection.read_some(kAnswersWithin);
     if (received.kind == Received::Kind::kTimeout) break;
     if (received.kind != Received::Kind::kData) return Failure{received.reason};
     for (const scip::Reply& reply : parser.push(received.bytes))
@@ -138,7 +138,7 @@ Diagnosis check_multicast(const std::string& network) {
 }
 
 Diagnosis check_lidar(const std::string& address) {
-  Result<ByteStream> connection = ByteStream::open(address, kPatience);
+  Result<ByteStream> connection = ByteStream::open(address, kAnswersWithin);
   if (!connection) return unreachable("lidar", connection.reason());
   const Result<LidarIdentity> lidar = ask_name(*connection);
   if (!lidar) return unreachable("lidar", address + ": " + lidar.reason());
@@ -149,7 +149,7 @@ Diagnosis check_lidar(const std::string& address) {
 }
 
 Diagnosis check_stepper(const std::string& address) {
-  const Result<ByteStream> connection = ByteStream::open(address, kPatience);
+  const Result<ByteStream> connection = ByteStream::open(address, kAnswersWithin);
   if (!connection) return unreachable("stepper", connection.reason());
   return {"stepper", Grade::kOk, address + " takes a connection; GRBL was not asked", {}};
 }

@@ -7,7 +7,7 @@
 namespace swivel {
 namespace {
 
-constexpr auto kPatience = std::chrono::milliseconds(2500);  // they promise 2 s
+constexpr auto kStopsWithin = std::chrono::milliseconds(2500);  // they promise 2 s
 
 std::vector<std::string> arguments_of(const std::string& name, const CommonOptions& common,
                                       const ParticipantsOptions& options) {
@@ -52,7 +52,8 @@ std::optional<std::string> Participants::ended() {
 void Participants::stop() {
   for (const auto& child : children_) child->ask_to_stop();
   for (const auto& child : children_) {
-    if (!child->wait_or_kill(kPatience)) log_error("{} did not stop and was killed", child->name());
+    if (!child->wait_or_kill(kStopsWithin))
+      log_error("{} did not stop and was killed", child->name());
   }
   children_.clear();
 }

@@ -6,18 +6,10 @@
 #include <utility>
 
 #include "calibration/roof_steps.hpp"
-#include "components/common/program.hpp"
+#include "components/swivel/offline/text_file.hpp"
 #include "components/swivel/pictures/mounting_charts.hpp"
 
 namespace swivel {
-namespace {
-
-void must_be_drawn(const Outcome& outcome) {
-  if (!outcome) throw ExitError(kExitInputOutput, outcome.reason());
-}
-
-}  // namespace
-
 MountingPictures::MountingPictures(std::string folder, std::string title,
                                    const RigGeometry& nominal)
     : folder_(std::move(folder)), title_(std::move(title)), nominal_(nominal) {}
@@ -34,8 +26,8 @@ std::optional<std::vector<double>> MountingPictures::add(std::size_t sweep,
   Roof roof{sweep, fmt::format("{}/roof_{:02}.png", folder_, sweep),
             fmt::format("{}/roof_deviations_{:02}.png", folder_, sweep)};
   const std::string title = fmt::format("{}: roof, sweep {}", title_, sweep);
-  must_be_drawn(write_roof_chart(roof.steps_path, title, *look));
-  must_be_drawn(write_deviations_chart(roof.deviations_path, title, *look));
+  require_written(write_roof_chart(roof.steps_path, title, *look));
+  require_written(write_deviations_chart(roof.deviations_path, title, *look));
   roofs_.push_back(std::move(roof));
   std::vector<double> means_m(kRoofSteps);
   std::transform(look->off_m.begin(), look->off_m.end(), means_m.begin(), mean_deviation_m);
@@ -54,7 +46,7 @@ std::string MountingPictures::draw_biases(const TrueBias& true_bias_deg) const {
   }
   if (found.empty() || (found.size() < 2 && !judged)) return {};
   const std::string path = folder_ + "/bias.png";
-  must_be_drawn(write_bias_chart(path, title_ + ": bias of the centreline", found));
+  require_written(write_bias_chart(path, title_ + ": bias of the centreline", found));
   return path;
 }
 

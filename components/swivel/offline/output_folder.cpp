@@ -18,10 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void require(const Outcome& outcome) {
-  if (!outcome) throw ExitError(kExitInputOutput, outcome.reason());
-}
-
 }  // namespace
 
 OutputFolder::OutputFolder(std::string folder, std::string title, const RigFile& rig,
@@ -83,7 +79,7 @@ std::string OutputFolder::path(const std::string& kind, std::size_t index,
 
 void OutputFolder::write_clouds(const ProcessedSweep& processed,
                                 nlohmann::ordered_json& json) const {
-  require(write_pcd(path("cloud", processed.index, ".pcd"), processed.cloud));
+  require_written(write_pcd(path("cloud", processed.index, ".pcd"), processed.cloud));
   const auto left_out = write_ply(path("cloud", processed.index, ".ply"), processed.cloud);
   if (!left_out) throw ExitError(kExitInputOutput, left_out.reason());
   json["invalid_points_left_out_of_ply"] = *left_out;
@@ -101,8 +97,10 @@ void OutputFolder::write_pictures(const ProcessedSweep& processed,
   caption.frame = measured_ ? "base" : corrected ? "O" : "O'";
   if (corrected) caption.phi_offset_rad = rad_from_deg(processed.attitude.phi_offset_deg());
   const std::string top_view = path("top_view", processed.index, ".png");
-  require(write_top_view(top_view, corrected ? &processed.raw : nullptr, processed.cloud, caption));
-  require(write_density_view(path("density", processed.index, ".png"), processed.cloud, caption));
+  require_written(
+      write_top_view(top_view, corrected ? &processed.raw : nullptr, processed.cloud, caption));
+  require_written(
+      write_density_view(path("density", processed.index, ".png"), processed.cloud, caption));
   json["top_view"] = fs::path(top_view).filename();
 }
 

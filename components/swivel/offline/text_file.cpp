@@ -19,6 +19,10 @@ void write_text_file(const std::string& path, const std::string& text) {
   throw ExitError(kExitInputOutput, path + ": cannot be written; is the disk full?");
 }
 
+void require_written(const Outcome& outcome) {
+  if (!outcome) throw ExitError(kExitInputOutput, outcome.reason());
+}
+
 void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);

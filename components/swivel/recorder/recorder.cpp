@@ -7,7 +7,7 @@
 namespace swivel {
 namespace {
 
-constexpr auto kPatience = std::chrono::milliseconds(100);
+constexpr auto kLongestPause = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void Recorder::take(const AnyTopic& topic, CdrSample&& sample) {
 
 void Recorder::run() {
   while (!failed_) {
-    auto sample = queue_.pop(kPatience);
+    auto sample = queue_.pop(kLongestPause);
     const bool done = !sample && finishing_;
     if (const Outcome worked = work(std::move(sample)); !worked) fail(worked.reason());
     if (done) break;

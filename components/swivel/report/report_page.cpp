@@ -182,7 +182,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string base64(const std::string& bytes) {
-  constexpr const char* kLetters =
+  constexpr const char* kBase64Letters =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
@@ -194,7 +194,7 @@ std::string base64(const std::string& bytes) {
       bits = bits << 8 | static_cast<unsigned char>(byte);
     }
     for (std::size_t place = 0; place < 4; ++place)
-      text += place > count ? '=' : kLetters[bits >> (18 - 6 * place) & 63U];
+      text += place > count ? '=' : kBase64Letters[bits >> (18 - 6 * place) & 63U];
   }
   return text;
 }

@@ -6,18 +6,10 @@
 
 #include "calibration/transform_cloud.hpp"
 #include "components/attitude_corrector/corrector.hpp"
-#include "components/common/program.hpp"
+#include "components/swivel/offline/text_file.hpp"
 #include "components/swivel/pictures/sweep_charts.hpp"
 
 namespace swivel {
-namespace {
-
-void must_be_drawn(const Outcome& outcome) {
-  if (!outcome) throw ExitError(kExitInputOutput, outcome.reason());
-}
-
-}  // namespace
-
 SweepPictures::SweepPictures(std::string folder, std::string title, RigFile rig)
     : folder_(std::move(folder)), title_(std::move(title)), rig_(std::move(rig)) {}
 
@@ -49,11 +41,11 @@ void SweepPictures::draw(const ProcessedSweep& processed, const std::vector<Surf
   const auto drawn = [&](const std::string& kind) {
     return *drawn_.insert(path(kind, processed.index)).first;
   };
-  must_be_drawn(write_surfaces_chart(drawn("surfaces"), surfaces, caption));
+  require_written(write_surfaces_chart(drawn("surfaces"), surfaces, caption));
   drawn("top_view");  // the output folder draws it
   if (rig_.axis_measured) return;
-  must_be_drawn(write_seam_chart(drawn("seam"), processed.cloud, surfaces,
-                                 {attitude.seam_deg(), attitude.seam_sigma_deg()}, caption));
+  require_written(write_seam_chart(drawn("seam"), processed.cloud, surfaces,
+                                   {attitude.seam_deg(), attitude.seam_sigma_deg()}, caption));
   if (rig_.plate) draw_plate(processed, caption);
 }
 
@@ -65,8 +57,8 @@ void SweepPictures::draw_plate(const ProcessedSweep& processed, const PictureCap
     beta = PlateBeta{rad_from_deg(processed.attitude.beta_deg()),
                      rad_from_deg(processed.attitude.beta_sigma_deg())};
   const std::string file = path("plate", processed.index);
-  must_be_drawn(write_plate_chart(file, beams_at_plate(about_axis, *rig_.plate, rig_.geometry),
-                                  *rig_.plate, beta, caption));
+  require_written(write_plate_chart(file, beams_at_plate(about_axis, *rig_.plate, rig_.geometry),
+                                    *rig_.plate, beta, caption));
   drawn_.insert(file);
 }
 
