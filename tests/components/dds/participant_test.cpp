@@ -73,6 +73,15 @@ std::string best_effort_profiles() {
   return path;
 }
 
+// A pipeline once took the sweeps of another test's: 130 domains, by process id alone.
+TEST(DomainOfThisTest, IsNobodyElses) {
+  const std::string lock = "/tmp/swivel_test_domain_" + std::to_string(domain_of_this_test());
+  const int other = open(lock.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(other, 0);
+  EXPECT_NE(flock(other, LOCK_EX | LOCK_NB), 0);
+  close(other);
+}
+
 TEST(Participant, CarriesCloudsOf11MegabytesBetweenProcessesWhole) {
   const int domain = domain_of_this_test();
   Participant participant(loopback_participant("receiver", domain));

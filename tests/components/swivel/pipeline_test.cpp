@@ -36,10 +36,9 @@ TEST(Pipeline, ScansTheBenchWithinThePapersAccuracy) {
   Participant participant(options);
   const Witness witness(participant);
   participant.start();
-  // Of mode 7, so that alpha adds little to the error of mode 7: 0.08 deg to 0.13.
   const std::string recording = scratch.file("demo.mcap");
   const int code =
-      run_swivel(scratch, "demo --modes 1,7 --calibration-mode 7 -o " + folder + " --domain " +
+      run_swivel(scratch, "demo --modes 1,7 -o " + folder + " --domain " +
                               std::to_string(domain_of_this_test()) + " --record " + recording);
   ASSERT_EQ(code, 0) << content_of(scratch.file("out")) << content_of(scratch.file("err"));
   const auto sweeps = report_in(folder)["sweeps"];
