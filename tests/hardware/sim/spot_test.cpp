@@ -179,8 +179,8 @@ double growth_mm(const LidarOptions& lidar, double alpha_deg) {
 }
 
 // By hand: plate and floor, 60.9 and 950 mm below, answer with energies 0.7 / (1 + 60.9 / 300) and
-// 0.3 / (1 + 950 / 300) when whole. A spot of few rays is not round: there are edges on which it
-// 91 laid 0.16 mm wrong, unlike ones to the plate's left and right.
+// 0.3 / (1 + 950 / 300) when whole. A spot of few rays is not round: 91 laid edges up to 0.16 mm
+// wrong, by the way they point, and so unlike ones to the plate's left and right.
 TEST(Spot, TheGrowthOfAnEdgeIsTheGaussiansWhicheverWayItLies) {
   LidarOptions lidar = wide_beam();
   lidar.gain_knee_mm = 300.0;
