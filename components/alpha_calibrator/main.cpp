@@ -1,7 +1,6 @@
 // alpha_calibrator: on request asks for sweeps, and fits in them the plate's mounting angle alpha,
 // from the walls of the room, or how the lidar stands on the axis. The calibration is published,
 // and kept for the next start.
-
 #include <filesystem>
 
 #include "components/alpha_calibrator/calibrator.hpp"

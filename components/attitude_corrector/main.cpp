@@ -1,5 +1,4 @@
 // attitude_corrector: raw clouds in, attitudes and corrected clouds out.
-
 #include "components/attitude_corrector/corrector.hpp"
 #include "components/attitude_corrector/sweep_and_cloud.hpp"
 #include "components/common/cloud_message.hpp"

@@ -1,5 +1,4 @@
 // cloud_assembler: scan lines, axis angles and windows in, organised clouds out.
-
 #include "components/cloud_assembler/assembler.hpp"
 #include "components/common/calibration_use.hpp"
 #include "components/common/cloud_message.hpp"

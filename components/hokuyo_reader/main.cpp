@@ -1,6 +1,5 @@
 // hokuyo_reader: a Hokuyo lidar on TCP or a serial device in, scan lines out. It streams at all
 // times and knows nothing of sweeps.
-
 #include <thread>
 
 #include "components/common/health_reporter.hpp"

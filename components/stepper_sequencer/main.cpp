@@ -1,6 +1,5 @@
 // stepper_sequencer: homes the shaft and, for each request, turns it through a sweep and back.
 // Says when the speed is constant, and the axis angle over time.
-
 #include "components/common/health_reporter.hpp"
 #include "components/common/phase_word.hpp"
 #include "components/common/program.hpp"

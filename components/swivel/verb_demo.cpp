@@ -1,6 +1,5 @@
 // swivel demo: five processes turn the simulated bench's lidar and stepper into corrected
 // clouds, and the result is held against the bench's truth.
-
 #include <fmt/core.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

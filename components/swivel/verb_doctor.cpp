@@ -1,5 +1,4 @@
 // swivel doctor: what would keep a scan from working on this computer, and what to do about it.
-
 #include <fmt/core.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

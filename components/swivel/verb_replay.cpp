@@ -1,5 +1,4 @@
 // swivel replay: a recording in place of the hardware, on the same topics.
-
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>

@@ -1,5 +1,4 @@
 // swivel status: who is alive, what it does, at what rate, and what went wrong last.
-
 #include <fmt/core.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

@@ -1,5 +1,4 @@
 // swivel up: the participants of a role, until Ctrl-C or until one of them ends.
-
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <memory>

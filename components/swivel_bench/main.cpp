@@ -1,6 +1,5 @@
 // swivel-bench: a lidar on TCP and a stepper on a pty that are not there, and the truth about
 // them.
-
 #include <future>
 #include <iostream>
 #include <thread>
