@@ -23,8 +23,8 @@ double strength_of(const Hit& hit) {
 
 }  // namespace
 
-// Places a ray by its offset. Rays that pass one another askew make a beam that widens as a
-// Gaussian one does: radius^2 = (at the lidar)^2 + (divergence * distance)^2.
+// Places a ray by its offset. Rays that pass one another askew, half of them each way round, make a
+// beam that widens as a Gaussian one does: radius^2 = (at the lidar)^2 + (divergence * distance)^2.
 class Spot::Bundle {
  public:
   Bundle(const Ray& centre, const LidarOptions& options)
@@ -40,7 +40,7 @@ class Spot::Bundle {
 
   Ray ray(const Offset& offset) const {
     const Vector3 aside = offset.across * across_ + offset.along * along_;
-    const Vector3 askew = offset.across * along_ - offset.along * across_;
+    const Vector3 askew = offset.hand * (offset.across * along_ - offset.along * across_);
     const Vector3 direction = centre_.direction + divergence_ * askew;
     return {centre_.origin + radius_m_ * aside,
             1.0 / std::sqrt(dot(direction, direction)) * direction};
@@ -62,7 +62,9 @@ std::vector<Spot::Offset> Spot::spiral(int count) {
     const double area = (ray + 0.5) / count;
     const double angle = ray * kGoldenAngle_rad;
     const double radius = std::sqrt(area);
-    rays.push_back({radius * std::cos(angle), radius * std::sin(angle), std::exp(-2.0 * area)});
+    const double hand = ray % 2 == 0 ? 1.0 : -1.0;
+    rays.push_back(
+        {radius * std::cos(angle), radius * std::sin(angle), hand, std::exp(-2.0 * area)});
     sum += rays.back().weight;
   }
   for (Offset& ray : rays) ray.weight /= sum;
@@ -73,7 +75,7 @@ Spot::Spot(const LidarOptions& options)
     : options_(options), rays_(spiral(kRays)), fine_rays_(spiral(kFineRays)) {
   for (int ray = 0; ray < kRimRays; ++ray) {
     const double angle = ray * kTurn_rad / kRimRays;
-    rim_.push_back({std::cos(angle), std::sin(angle), 0.0});
+    rim_.push_back({std::cos(angle), std::sin(angle), 1.0, 0.0});
   }
 }
 

@@ -27,6 +27,7 @@ class Spot {
   struct Offset {  // from the centre, in radii
     double across = 0.0;
     double along = 0.0;
+    double hand = 1.0;  // the sense in which it is askew, 1 or -1
     double weight = 0.0;
   };
   // Of one surface, or of several too near to one another to be told apart.

@@ -192,6 +192,37 @@ TEST(Spot, TheGrowthOfAnEdgeIsTheGaussiansWhicheverWayItLies) {
   }
 }
 
+// How far to the left, or with -1 to the right, a beam that looks down and outwards over the middle
+// of the plate's legs may pass and still be answered by the plate.
+double reach_aside_mm(const LidarOptions& lidar, double side) {
+  WorldOptions options;
+  options.plate.alpha_deg = 0.0;
+  const World world(options);
+  const Spot spot(lidar);
+  const double down = options.plate.depth_mm * 1e-3;
+  const double out = (options.plate.base_distance_mm + options.plate.hypotenuse_mm / 4) * 1e-3;
+  const double length = std::sqrt(down * down + out * out);
+  double low_mm = 0.0;
+  double high_mm = 50.0;
+  while (high_mm - low_mm > 0.001) {
+    const double middle_mm = 0.5 * (low_mm + high_mm);
+    const Ray beam{{0.0, side * middle_mm * 1e-3, 0.0}, {out / length, 0.0, -down / length}};
+    Random random(1);
+    (spot.echo(world, beam, random)->distance_m < 0.5 ? low_mm : high_mm) = middle_mm;
+  }
+  return low_mm;
+}
+
+// Rays that all passed one another in one sense twisted the spot on what it met aslant: left legs
+// lay elsewhere than right ones, and the plate seemed turned.
+TEST(Spot, TheBeamIsNotTwisted) {
+  LidarOptions lidar = wide_beam();
+  for (const double divergence_mrad : {0.0, 6.0, 12.0, 24.0}) {
+    lidar.divergence_mrad = divergence_mrad;
+    EXPECT_NEAR(reach_aside_mm(lidar, 1.0), reach_aside_mm(lidar, -1.0), 0.03) << divergence_mrad;
+  }
+}
+
 // For how much of a turn of the shaft beam 40, which looks to -125 deg, sees the plate.
 double plate_width_deg(const LidarOptions& lidar, double hypotenuse_mm) {
   WorldOptions options;
