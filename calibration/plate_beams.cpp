@@ -77,30 +77,29 @@ std::optional<PlateBeam> BeamTracer::trace(const CloudPoint& point) const {
                    met.y(),
                    along.x() / along.z(),
                    along.y() / along.z(),
+                   std::atan2(met.y(), met.x()),
                    range_m * (1.0 - part),
                    0,
                    in_ring(point, plate_, height_m_)};
 }
 
-struct Columns {
-  std::size_t first = 0;
-  std::size_t end = 0;
-};
-
-// The same beams of the fan look at the ring in every line.
-Columns columns_at_plate(const OrganisedCloud& cloud, const BeamTracer& tracer) {
-  Columns columns{cloud.beams, 0};
+// The same beams of the fan look at the ring in every line: some at either end of it.
+std::vector<std::size_t> columns_at_plate(const OrganisedCloud& cloud, const BeamTracer& tracer) {
+  std::vector<bool> looks(cloud.beams, false);
   const std::size_t stride = 1 + cloud.lines / kScoutLines;
   for (std::size_t line = 0; line < cloud.lines; line += stride) {
     for (std::size_t beam = 0; beam < cloud.beams; ++beam) {
-      if (beam >= columns.first && beam < columns.end) continue;
-      if (!tracer.trace(cloud.line(line)[beam])) continue;
-      columns.first = std::min(columns.first, beam);
-      columns.end = std::max(columns.end, beam + 1);
+      if (!looks[beam]) looks[beam] = tracer.trace(cloud.line(line)[beam]).has_value();
     }
   }
-  columns.first -= std::min(columns.first, kSpareColumns);
-  columns.end = std::min(columns.end + kSpareColumns, cloud.beams);
+  std::vector<std::size_t> columns;
+  for (std::size_t beam = 0; beam < cloud.beams; ++beam) {
+    const auto first =
+        looks.begin() + static_cast<std::ptrdiff_t>(beam - std::min(beam, kSpareColumns));
+    const auto end = looks.begin() +
+                     static_cast<std::ptrdiff_t>(std::min(beam + kSpareColumns + 1, cloud.beams));
+    if (std::find(first, end, true) != end) columns.push_back(beam);
+  }
   return columns;
 }
 
@@ -123,11 +122,11 @@ double plate_height_m(const PlateGeometry& plate, const RigGeometry& rig) {
 std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
                                       const RigGeometry& rig) {
   const BeamTracer tracer(plate, rig);
-  const Columns columns = columns_at_plate(cloud, tracer);
+  const std::vector<std::size_t> columns = columns_at_plate(cloud, tracer);
   std::vector<PlateBeam> beams;
-  if (columns.end > columns.first) beams.reserve(cloud.lines * (columns.end - columns.first));
+  beams.reserve(cloud.lines * columns.size());
   for (std::size_t line = 0; line < cloud.lines; ++line) {
-    for (std::size_t beam = columns.first; beam < columns.end; ++beam) {
+    for (const std::size_t beam : columns) {
       auto met = tracer.trace(cloud.line(line)[beam]);
       if (!met) continue;
       met->line = static_cast<std::uint32_t>(line);
@@ -135,14 +134,6 @@ std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGe
     }
   }
   return beams;
-}
-
-std::vector<PlateBeam> some_of(const std::vector<PlateBeam>& beams, std::size_t most) {
-  const std::size_t stride = 1 + beams.size() / most;
-  std::vector<PlateBeam> some;
-  some.reserve(beams.size() / stride + 1);
-  for (std::size_t i = 0; i < beams.size(); i += stride) some.push_back(beams[i]);
-  return some;
 }
 
 }  // namespace swivel

@@ -19,11 +19,11 @@ struct PlateBeam {
   double y_m = 0.0;
   double slope_x = 0.0;  // by how much that place moves when the plane is higher
   double slope_y = 0.0;
+  double azimuth_rad = 0.0;
   double beyond_m = 0.0;  // measured range less the range of that place
   std::uint32_t line = 0;
   bool in_ring = false;  // the point that it measured lies in the ring
 
-  double azimuth_rad() const { return std::atan2(y_m, x_m); }
   // By how much the range of that place changes when the plane is higher.
   double range_per_height() const {
     return -std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
@@ -33,9 +33,6 @@ struct PlateBeam {
 // Takes the raw cloud in O', its Z the axis of rotation. Beams without a return are not there.
 std::vector<PlateBeam> beams_at_plate(const OrganisedCloud& cloud, const PlateGeometry& plate,
                                       const RigGeometry& rig);
-
-// Every so many of them, so that there are no more than `most`.
-std::vector<PlateBeam> some_of(const std::vector<PlateBeam>& beams, std::size_t most);
 
 // Yuan's cut: the half ring on X' > 0 about the plate's plane.
 bool in_ring(const CloudPoint& point, const PlateGeometry& plate, double height_m);

@@ -125,7 +125,7 @@ std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, std::size_
     candidates.push_back({beam, edge, cell, beyond_m});
   }
   evidence.finish();
-  std::vector<EdgeBeam> chosen;
+  auto chosen = candidates.begin();
   for (EdgeBeam& beam : candidates) {
     beam.near = background.near(beam.cell);
     const EdgeDepth depth = depth_of(beam, frame.meeting(beam.beam), triangle, parameters);
@@ -134,9 +134,10 @@ std::vector<EdgeBeam> edge_beams(const std::vector<PlateBeam>& beams, std::size_
     const double ratio = evidence.ratio(beam.beyond_m);
     beam.odds = std::exp(ratio);
     beam.sureness = std::tanh(0.5 * std::abs(ratio));
-    chosen.push_back(beam);
+    *chosen++ = beam;
   }
-  return chosen;
+  candidates.erase(chosen, candidates.end());
+  return candidates;
 }
 
 }  // namespace swivel

@@ -18,7 +18,7 @@ constexpr double kInsideMarginM = 0.004;
 struct Search {
   double reach_rad;
   double step_rad;
-  std::size_t most_beams;  // more than these only take time
+  std::size_t most_beams;
 };
 constexpr Search kCoarse{rad_from_deg(30.0), rad_from_deg(3.0), 3'000};
 constexpr Search kFine{rad_from_deg(3.0), rad_from_deg(0.5), 5'000};
@@ -49,7 +49,14 @@ struct Tally {
   }
 };
 
-constexpr std::size_t kTalliedBeams = 15'000;  // in cells: more only take time
+// Of beams, more only take time.
+constexpr std::size_t kTalliedBeams = 15'000;  // in cells
+constexpr std::size_t kSlopeBeams = 5'000;     // of azimuth by line
+
+// Every so many of them are no more than `most`.
+std::size_t stride_to(std::size_t most, const std::vector<PlateBeam>& beams) {
+  return 1 + beams.size() / most;
+}
 
 // Cells of 10 deg and 18 mm about the axis, counted from the plate's middle line.
 class CellGrid {
@@ -57,7 +64,7 @@ class CellGrid {
   CellGrid(const PlateGeometry& plate, double beta_rad) : plate_(plate), beta_rad_(beta_rad) {}
 
   Tally& cell_of(const PlateBeam& beam) {
-    const double azimuth_rad = beam.azimuth_rad() - beta_rad_;  // both on the side of X' > 0
+    const double azimuth_rad = beam.azimuth_rad - beta_rad_;  // both on the side of X' > 0
     const double radius_m = std::sqrt(beam.x_m * beam.x_m + beam.y_m * beam.y_m);
     const double part =
         (radius_m - plate_.ring_inner_m) / (plate_.ring_outer_m - plate_.ring_inner_m);
@@ -110,7 +117,7 @@ double outline_score(const PlateGeometry& plate, const std::vector<PlateBeam>& b
 
 double fit_outline(const PlateGeometry& plate, const std::vector<PlateBeam>& beams, double beta_rad,
                    const Search& search) {
-  const std::size_t stride = 1 + beams.size() / search.most_beams;
+  const std::size_t stride = stride_to(search.most_beams, beams);
   double best_rad = beta_rad;
   double best_score = outline_score(plate, beams, beta_rad, stride);
   const auto steps = static_cast<int>(std::lround(search.reach_rad / search.step_rad));
@@ -135,22 +142,22 @@ struct LineAzimuths {
 // Beams further off than this are of the fan's other end, half a turn away.
 constexpr double kOtherEndRad = 0.7;
 
-LineAzimuths fit_near(const std::vector<PlateBeam>& beams, const std::vector<double>& azimuths_rad,
+LineAzimuths fit_near(const std::vector<PlateBeam>& beams, std::size_t stride,
                       const LineAzimuths& guess, double within_rad) {
   LineAzimuths fit;
   fit.beams.assign(guess.beams.size(), 0);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // of line and azimuth
   Eigen::Vector2d products = Eigen::Vector2d::Zero();
   double count = 0.0;
-  for (std::size_t index = 0; index < beams.size(); ++index) {
-    const auto line = static_cast<double>(beams[index].line);
-    const double azimuth_rad = azimuths_rad[index];
+  for (std::size_t index = 0; index < beams.size(); index += stride) {
+    const PlateBeam& beam = beams[index];
+    const auto line = static_cast<double>(beam.line);
     const double guessed_rad = guess.first_rad + guess.step_rad * line;
-    if (std::abs(azimuth_rad - guessed_rad) > within_rad) continue;
-    ++fit.beams[beams[index].line];
+    if (std::abs(beam.azimuth_rad - guessed_rad) > within_rad) continue;
+    ++fit.beams[beam.line];
     count += 1.0;
-    sum += Eigen::Vector2d(line, azimuth_rad);
-    products += line * Eigen::Vector2d(line, azimuth_rad);
+    sum += Eigen::Vector2d(line, beam.azimuth_rad);
+    products += line * Eigen::Vector2d(line, beam.azimuth_rad);
   }
   if (count < 1.0) return fit;
   const double squares = products.x() - sum.x() * sum.x() / count;
@@ -160,16 +167,13 @@ LineAzimuths fit_near(const std::vector<PlateBeam>& beams, const std::vector<dou
 }
 
 LineAzimuths fit_line_azimuths(const std::vector<PlateBeam>& beams, std::size_t lines) {
-  std::vector<double> azimuths_rad;
-  azimuths_rad.reserve(beams.size());
-  for (const PlateBeam& beam : beams) azimuths_rad.push_back(beam.azimuth_rad());
+  const std::size_t stride = stride_to(kSlopeBeams, beams);
   LineAzimuths fit;
   fit.beams.assign(lines, 0);
-  fit = fit_near(beams, azimuths_rad, fit, 2 * kPi);
-  for (const double within_rad : {2 * kOtherEndRad, kOtherEndRad, kOtherEndRad}) {
-    fit = fit_near(beams, azimuths_rad, fit, within_rad);
+  for (const double within_rad : {2 * kPi, 2 * kOtherEndRad, kOtherEndRad}) {
+    fit = fit_near(beams, stride, fit, within_rad);
   }
-  return fit;
+  return fit_near(beams, 1, fit, kOtherEndRad);
 }
 
 std::size_t usual_beams(const LineAzimuths& azimuths) {
@@ -208,7 +212,8 @@ std::string hidden_part(const PlateGeometry& plate, const std::vector<PlateBeam>
                         double beta_rad) {
   const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
-  for (const PlateBeam& beam : some_of(beams, kTalliedBeams)) {
+  for (std::size_t index = 0; index < beams.size(); index += stride_to(kTalliedBeams, beams)) {
+    const PlateBeam& beam = beams[index];
     if (outline.inside_m(beam.x_m, beam.y_m) > kInsideMarginM) {
       grid.cell_of(beam).add(beam.in_ring);
     }
@@ -278,7 +283,8 @@ std::string foreign_object(const PlateGeometry& plate, const std::vector<PlateBe
                            double beta_rad, double margin_m) {
   const PlateOutline outline(plate, beta_rad);
   CellGrid grid(plate, beta_rad);
-  for (const PlateBeam& beam : some_of(beams, kTalliedBeams)) {
+  for (std::size_t index = 0; index < beams.size(); index += stride_to(kTalliedBeams, beams)) {
+    const PlateBeam& beam = beams[index];
     if (outline.inside_m(beam.x_m, beam.y_m) < -margin_m) {
       grid.cell_of(beam).add(beam.in_ring);
     }
