@@ -70,11 +70,8 @@ class Audience {
   void check(std::size_t listeners, Sequencer& sequencer) {
     const bool has_left = listeners == 0 && listeners_ > 0;
     listeners_ = listeners;
-    if (!has_left) return;
-    log_warning("nobody listens any more: a sweep under way is cancelled");
-    msg::SweepRequest cancel;
-    cancel.cancel(true);
-    sequencer.request(cancel);
+    if (has_left && sequencer.cancel())
+      log_warning("nobody listens any more: the sweep under way is cancelled");
   }
 
  private:

@@ -69,6 +69,8 @@ class Sequencer {
 
   // Any thread; does not block. The answer comes as a Sweep.
   void request(const msg::SweepRequest& request);
+  // Of the request under way. False: there is none. Any thread; does not block.
+  bool cancel();
 
   SequencerHealth health() const;
   // False once the thread that moves the motor hangs, wherever it does.

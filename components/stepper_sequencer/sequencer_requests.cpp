@@ -9,10 +9,8 @@ namespace swivel {
 
 void Sequencer::request(const msg::SweepRequest& request) {
   if (request.cancel()) {
-    std::unique_lock lock(mutex_);
-    if (busy_) return interruption_.cancel();
-    lock.unlock();
-    return announcer_.repeat("there is nothing to cancel");
+    if (!cancel()) announcer_.repeat("there is nothing to cancel");
+    return;
   }
   std::unique_lock lock(mutex_);
   const std::optional<std::string> reason = why_not_taken(request);
@@ -25,6 +23,12 @@ void Sequencer::request(const msg::SweepRequest& request) {
   }
   lock.unlock();
   refuse(request, *reason);
+}
+
+bool Sequencer::cancel() {
+  const std::lock_guard lock(mutex_);
+  if (busy_) interruption_.cancel();
+  return busy_;
 }
 
 std::optional<std::string> Sequencer::why_not_taken(const msg::SweepRequest& request) const {

@@ -351,6 +351,17 @@ TEST(Sequencer, ManyCancelsAreOne) {
   EXPECT_TRUE(rig.await_reason(msg::PHASE_IDLE, "nothing to cancel"));
 }
 
+// Who cancels because nobody listens any more says so only where there was something to cancel.
+TEST(Sequencer, ACancelTellsWhetherThereWasSomethingToCancel) {
+  SequencerRig rig;
+  ASSERT_TRUE(rig.ready());
+  EXPECT_FALSE(rig.sequencer.cancel());
+  rig.ask(7, 5);
+  ASSERT_TRUE(rig.await(msg::PHASE_CRUISING));
+  EXPECT_TRUE(rig.sequencer.cancel());
+  EXPECT_TRUE(rig.await_reason(msg::PHASE_IDLE, "cancelled"));
+}
+
 TEST(Sequencer, ARequestForAnotherRigOrWithoutAnIdIsRefused) {
   SequencerRig rig;
   ASSERT_TRUE(rig.ready());
