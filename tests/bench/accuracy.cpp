@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kWallsLookedFor = 8;
 constexpr std::uint64_t kCalibrationRun = 50;  // its sweeps are not those of the trials
+constexpr std::size_t kMostCalibrationSweeps = 1000;
 
 // The rig is the same one in all of them.
 BenchSweepOptions sweep_of(Tier tier, int mode, std::uint64_t run, std::size_t sweep) {
@@ -31,7 +32,8 @@ BenchSweepOptions sweep_of(const TrialPlan& plan, std::size_t sweep) {
 BenchSweepOptions sweep_of(const CalibrationPlan& plan, std::size_t sweep) {
   const std::uint64_t run =
       plan.seed * 100 + kCalibrationRun + static_cast<std::uint64_t>(plan.mode);
-  BenchSweepOptions options = sweep_of(plan.tier, plan.mode, run, sweep);
+  const std::size_t before = kMostCalibrationSweeps * static_cast<std::size_t>(plan.run);
+  BenchSweepOptions options = sweep_of(plan.tier, plan.mode, run, before + sweep);
   options.world.room = room_of(plan.room);
   return options;
 }
@@ -138,14 +140,16 @@ std::vector<Calibrated> calibrate(const CalibrationPlan& plan,
   return all;
 }
 
-std::vector<std::vector<AttitudeTrial>> run_trials(const TrialPlan& plan,
-                                                   const std::vector<NamedEstimator>& estimators) {
+std::vector<std::vector<AttitudeTrial>> run_trials(
+    const TrialPlan& plan, const std::vector<std::vector<NamedEstimator>>& calibrations) {
   std::vector<std::vector<AttitudeTrial>> trials(
-      estimators.size(), std::vector<AttitudeTrial>(static_cast<std::size_t>(plan.sweeps)));
+      calibrations.front().size(),
+      std::vector<AttitudeTrial>(static_cast<std::size_t>(plan.sweeps)));
   on_all_cores(static_cast<std::size_t>(plan.sweeps), [&](std::size_t index) {
     BenchSweepOptions options = sweep_of(plan, index);
     options.plate_beams_only = true;
     const BenchSweep sweep = make_bench_sweep(options);
+    const auto& estimators = calibrations[index % calibrations.size()];
     for (std::size_t each = 0; each < estimators.size(); ++each) {
       trials[each][index] = tried(estimators[each], sweep);
     }

@@ -52,6 +52,7 @@ struct CalibrationPlan {
   int mode = 7;
   int sweeps = 10;
   std::uint64_t seed = 1;
+  int run = 0;  // the seed's first calibration, its second, ...
 };
 
 // The whole chain of `swivel calibrate alpha`: each estimator with the plate that it learns from
@@ -63,9 +64,11 @@ struct Calibrated {
 std::vector<Calibrated> calibrate(const CalibrationPlan& plan,
                                   const std::vector<NamedEstimator>& estimators);
 
-// A row of trials for each estimator; all see the same sweeps. Takes all cores.
-std::vector<std::vector<AttitudeTrial>> run_trials(const TrialPlan& plan,
-                                                   const std::vector<NamedEstimator>& estimators);
+// A row of trials for each estimator; all see the same sweeps. The sweeps take turns with the
+// calibrations, each of which has all estimators: a calibration's error is as random as a sweep's,
+// and all the sweeps after it share it. Takes all cores.
+std::vector<std::vector<AttitudeTrial>> run_trials(
+    const TrialPlan& plan, const std::vector<std::vector<NamedEstimator>>& calibrations);
 
 // Of the processor, for one estimate of a sweep with all its beams.
 std::vector<double> median_times_ms(const TrialPlan& plan,

@@ -32,6 +32,8 @@ const std::map<int, Aim> kAims{{1, {0.09, 0.286}}, {4, {0.04, 0.12}}, {7, {0.02,
 constexpr std::array<double, 7> kStudyBound_deg{0.070, 0.043, 0.030, 0.027, 0.018, 0.015, 0.010};
 constexpr std::array<double, 7> kStudyRing_deg{0.474, 0.325, 0.266, 0.208, 0.178, 0.172, 0.133};
 
+constexpr int kCalibrations = 5;
+
 constexpr double kMapDistance_mm = 10'000.0;
 constexpr double kMapAim_mm = 50.0;
 
@@ -104,17 +106,20 @@ void print_alpha(const Calibrated& calibrated) {
 }
 
 // The estimators as their rig is used: with the plate and the alpha that a calibration found.
-std::vector<NamedEstimator> calibrated_estimators(Tier tier, std::uint64_t seed) {
+std::vector<std::vector<NamedEstimator>> calibrations(Tier tier, std::uint64_t seed) {
   CalibrationPlan plan;
   plan.tier = tier;
   plan.seed = seed;
   std::printf("Alpha, from %d sweeps of mode %d in a cluttered room:\n", plan.sweeps, plan.mode);
-  std::vector<NamedEstimator> estimators;
-  for (const Calibrated& each : calibrate(plan, known_estimators())) {
-    print_alpha(each);
-    estimators.push_back(each.estimator);
+  std::vector<std::vector<NamedEstimator>> found;
+  for (plan.run = 0; plan.run < kCalibrations; ++plan.run) {
+    found.emplace_back();
+    for (const Calibrated& each : calibrate(plan, known_estimators())) {
+      print_alpha(each);
+      found.back().push_back(each.estimator);
+    }
   }
-  return estimators;
+  return found;
 }
 
 struct AlphaAim {
@@ -145,21 +150,22 @@ void measure_alpha(std::uint64_t seed) {
 void measure(const Options& options) {
   std::printf(
       "Error of phi_offset, deg, over %d sweeps a row: phi_start drawn within 3 deg of 0. The rig"
-      " is calibrated first, as `swivel calibrate alpha` does it.\n",
-      options.sweeps);
+      " is calibrated first,\nas `swivel calibrate alpha` does it, %d times: the sweeps take turns"
+      " with the calibrations.\n",
+      options.sweeps, kCalibrations);
   std::printf(
       "/sigma: rms of error by its own sigma. 10 m: map error there, distance * tan(max),"
       " aim 50 mm.\nms: of the processor, the median of one estimate of all beams.\n");
   for (const Tier tier : options.tiers) {
     print_tier(tier);
-    const auto estimators = calibrated_estimators(tier, options.seed);
+    const auto calibrated = calibrations(tier, options.seed);
     print_head(tier);
     for (const int mode : options.modes) {
       const TrialPlan plan{tier, mode, options.sweeps, options.seed};
-      const auto trials = run_trials(plan, estimators);
-      const auto times_ms = median_times_ms(plan, estimators);
-      for (std::size_t i = 0; i < estimators.size(); ++i) {
-        print_row(plan, estimators[i].name, summarise(trials[i]), times_ms[i]);
+      const auto trials = run_trials(plan, calibrated);
+      const auto times_ms = median_times_ms(plan, calibrated.front());
+      for (std::size_t i = 0; i < trials.size(); ++i) {
+        print_row(plan, calibrated.front()[i].name, summarise(trials[i]), times_ms[i]);
       }
     }
   }

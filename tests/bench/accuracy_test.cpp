@@ -27,7 +27,7 @@ TEST(Accuracy, SummarisesWhatWasNotRefused) {
 
 // The truth and the estimators agree on frames and signs: without faults little is left.
 TEST(Accuracy, TrialsAreJudgedByTheTruth) {
-  const auto trials = run_trials({Tier::kClean, 4, 8, 3}, known_estimators());
+  const auto trials = run_trials({Tier::kClean, 4, 8, 3}, {known_estimators()});
   ASSERT_FALSE(trials.empty());
   for (const auto& row : trials) {
     const AccuracySummary summary = summarise(row);
@@ -35,9 +35,21 @@ TEST(Accuracy, TrialsAreJudgedByTheTruth) {
     EXPECT_LT(summary.rms_deg, 0.6);
   }
   // The same seed gives the same sweeps, whichever thread casts them.
-  const auto again = run_trials({Tier::kClean, 4, 8, 3}, known_estimators());
+  const auto again = run_trials({Tier::kClean, 4, 8, 3}, {known_estimators()});
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(trials[0][i].error_rad, again[0][i].error_rad);
   EXPECT_NE(trials[0][0].error_rad, trials[0][1].error_rad);
+}
+
+TEST(Accuracy, SweepsTakeTurnsWithTheCalibrations) {
+  auto turned = known_estimators();
+  for (NamedEstimator& each : turned) each.plate.alpha_rad += 0.1;
+  const TrialPlan plan{Tier::kClean, 1, 4, 3};
+  const auto trials = run_trials(plan, {known_estimators(), turned});
+  const auto unturned = run_trials(plan, {known_estimators()});
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(std::abs(trials[0][i].error_rad - unturned[0][i].error_rad), i % 2 == 0 ? 0.0 : 0.1,
+                1e-9);
+  }
 }
 
 // A calibration on the bench finds the alpha that the sweeps were made with; what it found is what
@@ -51,6 +63,8 @@ TEST(Accuracy, ACalibrationFindsAlphaAndThePlate) {
   EXPECT_LT(std::abs(outline.alpha.fit->alpha_rad - PlateGeometry().alpha_rad),
             5.0 * outline.alpha.fit->sigma_rad);
   EXPECT_LT(outline.estimator.plate.shape.growth_m.sigma, PlateShape().growth_m.sigma / 5.0);
+  const auto next = calibrate({Tier::kReal, Room::kSquare, 2, 4, 3, 1}, known_estimators());
+  EXPECT_NE(next.back().estimator.plate.alpha_rad, outline.estimator.plate.alpha_rad);
 }
 
 // What makes the benchmark quick must not change what it measures.
