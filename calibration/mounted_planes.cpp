@@ -6,6 +6,7 @@
 
 #include "calibration/organised_cloud.hpp"
 #include "calibration/planes.hpp"
+#include "calibration/two_views.hpp"
 
 namespace swivel {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 constexpr double kLeastShareOfPlane = 0.01;  // of the sweep's points
 constexpr double kBandOfRange = 0.03;        // a small scene has its planes near to one another
 constexpr double kThinnestBandM = 0.01;
-constexpr std::size_t kLargestPlanes = 3;
+constexpr std::size_t kPlanesLookedAt = 8;
+constexpr std::size_t kLargestPlanes = 3;  // of them
 constexpr double kReachSigmas = 3.0;
 
 Eigen::Vector3d point_at_rest(const RayPlace& ray, const SweepReadings& readings,
@@ -45,6 +47,15 @@ std::vector<RayPlace> still_near(const std::vector<RayPlace>& rays, double reach
   return near;
 }
 
+// All of them where there is but one view.
+std::vector<RayPlace> seen_by_both(std::vector<RayPlace> rays, const SweepReadings& readings) {
+  const auto views = views_of_lines(readings);
+  if (!views) return rays;
+  const auto once = [&views](const RayPlace& ray) { return (*views)[ray.line] == View::kOnlyOne; };
+  rays.erase(std::remove_if(rays.begin(), rays.end(), once), rays.end());
+  return rays;
+}
+
 double rms(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double value : values) squares += value * value;
@@ -60,6 +71,7 @@ std::vector<SightedPlane> find_sighted_planes(const SweepReadings& readings,
   options.band_m =
       std::clamp(kBandOfRange * median_range_m(readings), kThinnestBandM, options.band_m);
   options.shared_strip_m = 2.0 * options.band_m;
+  options.lever_arm_m = beams.lever_arm_m().head<2>().norm();
   std::vector<SightedPlane> planes;
   for (const Plane& plane : find_planes(cloud_under(readings, beams), count, options)) {
     planes.push_back({plane.normal, plane.distance_m, plane.rms_m, plane.points});
@@ -107,12 +119,17 @@ Thickness compare_thickness(const SweepReadings& readings, const RigGeometry& no
                             const MountingVector& mounting) {
   const MountedBeams before(nominal, mounting_of(nominal), readings);
   const MountedBeams after(nominal, mounting, readings);
-  Thickness thickness;
-  const auto planes = find_sighted_planes(readings, before, kLargestPlanes);
-  for (const SightedPlane& plane : planes) {
+  std::vector<std::vector<RayPlace>> planes;
+  for (const SightedPlane& plane : find_sighted_planes(readings, before, kPlanesLookedAt)) {
     const double reach_m = kReachSigmas * plane.range_sigma_m;
-    const auto rays =
-        still_near(rays_near(plane, reach_m, readings, before), reach_m, readings, after);
+    const auto rays = seen_by_both(rays_near(plane, reach_m, readings, before), readings);
+    planes.push_back(still_near(rays, reach_m, readings, after));
+  }
+  std::sort(planes.begin(), planes.end(),
+            [](const auto& one, const auto& other) { return one.size() > other.size(); });
+  planes.resize(std::min(planes.size(), kLargestPlanes));
+  Thickness thickness;
+  for (const std::vector<RayPlace>& rays : planes) {
     thickness.nominal_m += std::pow(rms(off_their_plane_m(rays, readings, before)), 2);
     thickness.mounted_m += std::pow(rms(off_their_plane_m(rays, readings, after)), 2);
   }

@@ -28,8 +28,9 @@ std::vector<double> off_their_plane_m(const std::vector<RayPlace>& rays,
                                       const SweepReadings& readings, const MountedBeams& beams);
 
 // How thick the largest planes are under the rig file's mounting and under another: rms over the
-// same rays, those that are near the planes under both. A plane square to the axis tells of no turn
-// about it.
+// same rays, those that are near the planes under both. Where the lidar looks twice, only what both
+// views see: elsewhere a surface that is not quite flat outweighs how well they agree. A plane
+// square to the axis tells of no turn about it.
 struct Thickness {
   double nominal_m = 0.0;
   double mounted_m = 0.0;

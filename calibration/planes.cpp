@@ -4,12 +4,13 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/sample_consensus/ransac.h>
-#include <pcl/sample_consensus/sac_model_plane.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "calibration/seen_plane.hpp"
 
 namespace swivel {
 namespace {
@@ -60,9 +61,9 @@ Plane facing_origin(const Eigen::Vector3d& normal, double offset_m) {
 }
 
 // RANSAC with its own fixed seed: the same cloud gives the same planes.
-std::optional<Plane> segment(const PclCloud::Ptr& cloud, double band_m) {
-  const auto model = pcl::make_shared<pcl::SampleConsensusModelPlane<pcl::PointXYZ>>(cloud);
-  pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(model, band_m);
+std::optional<Plane> segment(const PclCloud::Ptr& cloud, const PlaneOptions& options) {
+  const auto model = pcl::make_shared<SeenPlane>(cloud, options.lever_arm_m);
+  pcl::RandomSampleConsensus<pcl::PointXYZ> consensus(model, options.band_m);
   const auto rounds = static_cast<int>(kRansacEffort / cloud->size());
   consensus.setMaxIterations(std::min(rounds, kMostRansacRounds));
   if (!consensus.computeModel()) return std::nullopt;
@@ -115,11 +116,15 @@ bool near_another(const std::vector<Plane>& planes, std::size_t own, const Eigen
 }
 
 Moments moments_near(const Points& points, const std::vector<Plane>& planes, std::size_t own,
-                     double band_m, double strip_m) {
+                     double band_m, const PlaneOptions& options) {
+  const auto furthest_m =
+      static_cast<float>(furthest_seen_m(planes[own].distance_m, options.lever_arm_m));
   Moments moments;
   for (const Eigen::Vector3f& point : points) {
     if (std::abs(height_over(planes[own], point)) > band_m) continue;
-    if (!near_another(planes, own, point, strip_m)) moments.add(point.cast<double>());
+    if (point.squaredNorm() > furthest_m * furthest_m) continue;
+    if (near_another(planes, own, point, options.shared_strip_m)) continue;
+    moments.add(point.cast<double>());
   }
   return moments;
 }
@@ -146,7 +151,7 @@ std::optional<Plane> refine(const Points& points, std::vector<Plane> planes, std
                             const PlaneOptions& options) {
   double band_m = options.band_m;
   for (int round = 0; round < kRefinements; ++round) {
-    const auto better = fit(moments_near(points, planes, own, band_m, options.shared_strip_m));
+    const auto better = fit(moments_near(points, planes, own, band_m, options));
     if (!better) return std::nullopt;
     planes[own] = *better;
     band_m = std::clamp(kKeptSigmas * better->rms_m, 0.2 * options.band_m, 2.0 * options.band_m);
@@ -164,7 +169,7 @@ std::vector<Plane> find_roughly(const Points& points, std::size_t count,
   const std::size_t least = std::max(kLeastPointsOfAPlane, share);
   std::vector<Plane> planes;
   while (planes.size() < count && rest->size() >= least) {
-    const auto plane = segment(rest, options.band_m);
+    const auto plane = segment(rest, options);
     if (!plane || plane->points < least) break;
     planes.push_back(*plane);
     remove_near(*plane, 2.0 * options.band_m, *rest);

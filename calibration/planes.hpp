@@ -27,6 +27,7 @@ struct Plane {
 };
 
 struct PlaneOptions {
+  double lever_arm_m = 0.0;                   // of the lidar: it looks from so near to the origin
   double band_m = 0.05;                       // half the thickness in which a plane is looked for
   double shared_strip_m = 0.1;                // about another plane, whose points could be either's
   double least_share = 0.02;                  // of the cloud's points; what has less is no plane

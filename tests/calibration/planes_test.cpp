@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -202,6 +203,30 @@ TEST(Planes, TheSameCloudGivesTheSamePlanes) {
   for (std::size_t plane = 0; plane < once.size(); ++plane) {
     EXPECT_EQ(once[plane].normal, again[plane].normal);
     EXPECT_EQ(once[plane].distance_m, again[plane].distance_m);
+  }
+}
+
+// In a recording of a real tilting lidar the largest planes were bundles of lines, through the
+// sensor. Here it looks at small round things alone, through 6 deg.
+TEST(Planes, LinesNearToOneAnotherAreNone) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> range_m(0.3F, 3.0F);
+  std::array<float, 100> ranges_m{};
+  for (float& range : ranges_m) range = range_m(random);
+  OrganisedCloud bundle(60, 500);
+  for (std::size_t line = 0; line < bundle.lines; ++line) {
+    const double azimuth_rad = rad_from_deg(20.0 + 0.1 * static_cast<double>(line));
+    for (std::size_t beam = 0; beam < bundle.beams; ++beam) {
+      const double up_rad = rad_from_deg(0.54 * static_cast<double>(beam) - 135.0);
+      const auto far_m = static_cast<double>(ranges_m.at(beam / 5));
+      bundle.line(line)[beam] = {
+          static_cast<float>(far_m * std::cos(up_rad) * std::cos(azimuth_rad)),
+          static_cast<float>(far_m * std::cos(up_rad) * std::sin(azimuth_rad)),
+          static_cast<float>(far_m * std::sin(up_rad)), 0.0F};
+    }
+  }
+  for (const Plane& plane : find_planes(bundle, 6)) {
+    EXPECT_LT(plane.points, bundle.points.size() / 5) << plane.distance_m;
   }
 }
 

@@ -327,6 +327,7 @@ TEST(CalibrateMounting, FindsThePlayOfARealAxisAndProcessTakesItOut) {
   EXPECT_LT(found["hysteresis_sigma_deg"], 0.06);
   EXPECT_LT(found["views_apart_mm"].get<double>(),
             0.95 * found["views_apart_nominal_mm"].get<double>());
+  EXPECT_LT(found["largest_planes_mm"], found["largest_planes_nominal_mm"]);
   const auto down = [&](const std::string& options) {
     const std::string process =
         "process " + turning + " --no-pictures -o " + scratch.file("clouds");
