@@ -14,8 +14,8 @@ namespace swivel {
 // its lever arm the lidar was. Lines near to one another lie on the scan plane, whatever they met,
 // but no surface is seen along itself.
 inline double furthest_seen_m(double distance_m, double lever_arm_m) {
-  constexpr double kGrazing = 0.1;  // sine of the angle between beam and plane
-  return std::max(0.0, distance_m - lever_arm_m) / kGrazing;
+  constexpr double kSineOfGrazing = 0.1;  // of the angle between beam and plane
+  return std::max(0.0, distance_m - lever_arm_m) / kSineOfGrazing;
 }
 
 class SeenPlane : public pcl::SampleConsensusModelPlane<pcl::PointXYZ> {
